@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace graspdb {
+
+/** How a long computation hears of cancellation and deadline and tells of its
+ progress: the only clock the engine sees. The last argument of every long
+ function. Cancelled() and Cancel() may be called from any thread;
+ ReportProgress() is called from the computing threads, one at a time. */
+class ExecutionContext {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /** Receives a stage's name and the share of the whole work done, 0..1. */
+  using ProgressCallback = std::function<void(const std::string&, double)>;
+
+  ExecutionContext() = default;
+  explicit ExecutionContext(ProgressCallback callback)
+      : callback_(std::move(callback)) {}
+  ExecutionContext(const ExecutionContext&) = delete;
+  ExecutionContext& operator=(const ExecutionContext&) = delete;
+
+  void Cancel() { cancelled_ = true; }
+  void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
+
+  /** True once cancelled or past the deadline: finish up. */
+  bool Cancelled() const {
+    return cancelled_ || (deadline_ && Clock::now() > *deadline_);
+  }
+
+  void ReportProgress(const std::string& stage, double share) {
+    if (callback_) callback_(stage, share);
+  }
+
+ private:
+  std::atomic<bool> cancelled_{false};
+  std::optional<Clock::time_point> deadline_;
+  ProgressCallback callback_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/execution_context.h"
+#include "engine/base/result.h"
+#include "engine/hand/hand_model.h"
+#include "engine/parameters.h"
+#include "engine/planning/grasp.h"
+#include "engine/segmentation/part.h"
+#include "engine/segmentation/part_segmentation.h"
+
+/** @file
+ The engine's public face: values in, values out. Segment (see
+ part_segmentation.h), Learn, Transfer. All are deterministic: the same request
+ gives the same result on any number of threads. */
+
+namespace graspdb {
+
+/** One round of active learning, as in Table I and its extensions. */
+struct LearningRound {
+  int samples{0};                ///< Labels so far.
+  int support_vectors{0};
+  double balanced_accuracy{0.0};  ///< On held-out uniform samples, 0..1.
+  double boundary_accuracy{0.0};  ///< On held-out samples near contact, 0..1.
+
+  bool operator==(const LearningRound&) const = default;
+};
+
+/** A part's learned grasp space: distinct stable grasps, best eps first. */
+struct GraspSpace {
+  std::vector<Grasp> grasps;  ///< Quality about the part.
+  std::vector<LearningRound> curve;
+  std::vector<HandConfiguration> support_vectors;  ///< The collision-free ones.
+  int configurations_tried{0};  ///< Hands closed and judged by the swarm.
+  double coverage{0.0};  ///< Share of (approach direction) bins reached, 0..1.
+
+  bool operator==(const GraspSpace&) const = default;
+};
+
+struct LearnRequest {
+  std::shared_ptr<const HandModel> hand;
+  Part part_E;
+  Parameters parameters;
+  uint64_t seed{1};
+  int threads{0};  ///< 0: as many as there are cores.
+};
+
+/** Sec. IV: configuration space, then grasp space, of one part of an example.
+ @retval kCancelled; a deadline instead returns what was found so far. */
+Result<GraspSpace> Learn(const LearnRequest& request,
+                         ExecutionContext& context);
+
+/** How one source grasp ended at one stage. */
+enum class TransferOutcome {
+  kSucceeded,
+  kNoCorrespondence,  ///< Fewer than two opposed contacts could be mapped.
+  kNoContact,         ///< The fingers met nothing, or only a cap.
+  kUnstable,          ///< Closed, but eps stays below the limit.
+  kFingerCollision,   ///< No collision-free finger posture was found.
+  kPalmCollision,     ///< The palm collides and no retreat helped.
+  kTooFar,            ///< Stable, but too far from the example's grasp.
+  kUnreachable,       ///< No collision-free pre-grasp closes to it.
+};
+
+/** The whole story of one source grasp. */
+struct TransferRecord {
+  int part{0};          ///< Index into TransferRequest::novel_parts.
+  int source_grasp{0};  ///< Index into that part's source grasp space.
+  TransferOutcome transfer{TransferOutcome::kNoCorrespondence};
+  TransferOutcome assembly{TransferOutcome::kNoCorrespondence};
+  std::optional<Grasp> transferred;  ///< On the part.
+  std::optional<Grasp> assembled;    ///< On the whole object.
+  /** Where Eq. (4) sends the source grasp's contacts, on the novel object;
+   empty where a contact has no target. One per source contact. */
+  std::vector<std::optional<Eigen::Vector3d>> targets_N;
+  double example_epsilon{0.0};           ///< Source grasp about its part.
+  double example_epsilon_whole{0.0};     ///< Source grasp about its whole.
+  double open_close_epsilon_part{0.0};   ///< Baseline; 0 when it fails.
+  double open_close_epsilon_whole{0.0};  ///< Baseline; 0 when it fails.
+  double robust{0.0};       ///< Share of 32 perturbed copies that stay stable.
+  double penetration{0.0};  ///< Deepest overlap of hand and object, m.
+};
+
+/** Sec. V-A: how the example's part lies on the novel one. */
+struct PartAlignment {
+  RigidTransform X_NE;   ///< The paper's (R*, T*).
+  double scale{1.0};     ///< p_N = scale · R p_E + T.
+  double residual{0.0};  ///< Mean 6-D deviation, rms radii.
+  double mapped_share{0.0};  ///< Samples that pass the consistency check.
+};
+
+struct TransferRequest {
+  std::shared_ptr<const HandModel> hand;
+  LabelledMesh example;                  ///< Whole example object, frame E.
+  LabelledMesh novel;                    ///< Whole novel object, frame N.
+  std::vector<Part> example_parts;       ///< Those of `example`.
+  std::vector<Part> novel_parts;         ///< Those of `novel`.
+  RigidTransform X_NE;  ///< Whole-object alignment, from segmentation …
+  double scale{1.0};    ///< … with its scale.
+  /** For each novel part the grasp space of the example part of the same label;
+   null for parts that no grasps are wanted for. */
+  std::vector<std::shared_ptr<const GraspSpace>> grasp_spaces;
+  int sources_per_part{40};
+  bool assemble{true};
+  Parameters parameters;
+  uint64_t seed{1};
+  int threads{0};  ///< 0: as many as there are cores.
+};
+
+struct TransferResult {
+  std::vector<PartAlignment> alignments;  ///< One per novel part.
+  std::vector<TransferRecord> records;    ///< Part by part, source by source.
+  bool complete{true};                    ///< False when the deadline cut it.
+};
+
+/** Sec. V: maps, replans and assembles source grasps on a novel object. The
+ source grasps are drawn by (seed, grasp space) before the novel object is
+ looked at, equally from each quartile of eps.
+ @retval kCancelled. */
+Result<TransferResult> Transfer(const TransferRequest& request,
+                                ExecutionContext& context);
+
+/** The version of the engine, part of every grasp's provenance. */
+const char* EngineVersion();
+
+/** The name of an outcome on the wire, e.g. "palm_collision". */
+const char* ToString(TransferOutcome outcome);
+
+}  // namespace graspdb

@@ -1,0 +1,64 @@
+#include "engine/geometry/triangle_mesh.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/contract.h"
+
+namespace graspdb {
+namespace {
+
+// A tetrahedron with corners at the origin and one metre along each axis.
+TriangleMesh MakeTetrahedron() {
+  return TriangleMesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                      {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+}
+
+TEST(TriangleMesh, NormalsPointOutAndAreasAdd) {
+  const TriangleMesh mesh = MakeTetrahedron();
+  EXPECT_TRUE(mesh.normal(0).isApprox(-Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(mesh.normal(3).isApprox(Eigen::Vector3d::Ones().normalized()));
+  EXPECT_NEAR(mesh.total_area(), 1.5 + std::sqrt(3.0) / 2, 1e-15);
+}
+
+TEST(TriangleMesh, AnIndexOutOfRangeIsAContractViolation) {
+  EXPECT_THROW(TriangleMesh({{0, 0, 0}}, {{0, 0, 1}}), ContractViolation);
+}
+
+TEST(MassProperties, OfATetrahedronAreTheTextbooks) {
+  // V = 1/6, centre at (1/4, 1/4, 1/4); farthest corner: √(9/16 + 2/16).
+  const MassProperties mass = CalcMassProperties(MakeTetrahedron());
+  EXPECT_NEAR(mass.volume, 1.0 / 6, 1e-15);
+  EXPECT_TRUE(mass.p_McCM.isApprox(Eigen::Vector3d::Constant(0.25), 1e-14));
+  EXPECT_NEAR(mass.max_radius, std::sqrt(11.0) / 4, 1e-14);
+}
+
+TEST(MassProperties, MoveWithTheMeshAndGrowWithTheCubeOfScale) {
+  const RigidTransform X_AM{
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized())
+          .toRotationMatrix(),
+      {100, -50, 20}};
+  const TriangleMesh mesh = MakeTetrahedron();
+  const MassProperties before = CalcMassProperties(mesh);
+  const MassProperties after =
+      CalcMassProperties(CalcTransformed(mesh, X_AM, 2.0));
+  EXPECT_NEAR(after.volume, 8 * before.volume, 1e-10);
+  EXPECT_NEAR((after.p_McCM - X_AM * (2.0 * before.p_McCM)).norm(), 0, 1e-10);
+}
+
+TEST(IsClosed, HoldsForASolidOnly) {
+  EXPECT_TRUE(IsClosed(MakeTetrahedron()));
+  const TriangleMesh open({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  EXPECT_FALSE(IsClosed(open));
+  EXPECT_FALSE(IsClosed(TriangleMesh()));
+  // The same face twice, or one face turned over.
+  EXPECT_FALSE(IsClosed(CalcUnion({open, open})));
+  const TriangleMesh flipped(
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+      {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+  EXPECT_FALSE(IsClosed(flipped));
+}
+
+}  // namespace
+}  // namespace graspdb
