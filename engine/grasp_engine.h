@@ -8,11 +8,13 @@
 
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
+#include "engine/cspace/active_learner.h"
 #include "engine/hand/hand_model.h"
 #include "engine/parameters.h"
 #include "engine/planning/grasp.h"
 #include "engine/segmentation/part.h"
 #include "engine/segmentation/part_segmentation.h"
+#include "engine/transfer/transfer_outcome.h"
 
 /** @file
  The engine's public face: values in, values out. Segment (see
@@ -20,16 +22,6 @@
  gives the same result on any number of threads. */
 
 namespace graspdb {
-
-/** One round of active learning, as in Table I and its extensions. */
-struct LearningRound {
-  int samples{0};                ///< Labels so far.
-  int support_vectors{0};
-  double balanced_accuracy{0.0};  ///< On held-out uniform samples, 0..1.
-  double boundary_accuracy{0.0};  ///< On held-out samples near contact, 0..1.
-
-  bool operator==(const LearningRound&) const = default;
-};
 
 /** A part's learned grasp space: distinct stable grasps, best eps first. */
 struct GraspSpace {
@@ -45,6 +37,7 @@ struct GraspSpace {
 struct LearnRequest {
   std::shared_ptr<const HandModel> hand;
   Part part_E;
+  TriangleMesh whole_E;  ///< The object that the part was cut from.
   Parameters parameters;
   uint64_t seed{1};
   int threads{0};  ///< 0: as many as there are cores.
@@ -54,18 +47,6 @@ struct LearnRequest {
  @retval kCancelled; a deadline instead returns what was found so far. */
 Result<GraspSpace> Learn(const LearnRequest& request,
                          ExecutionContext& context);
-
-/** How one source grasp ended at one stage. */
-enum class TransferOutcome {
-  kSucceeded,
-  kNoCorrespondence,  ///< Fewer than two opposed contacts could be mapped.
-  kNoContact,         ///< The fingers met nothing, or only a cap.
-  kUnstable,          ///< Closed, but eps stays below the limit.
-  kFingerCollision,   ///< No collision-free finger posture was found.
-  kPalmCollision,     ///< The palm collides and no retreat helped.
-  kTooFar,            ///< Stable, but too far from the example's grasp.
-  kUnreachable,       ///< No collision-free pre-grasp closes to it.
-};
 
 /** The whole story of one source grasp. */
 struct TransferRecord {
@@ -88,18 +69,18 @@ struct TransferRecord {
 
 /** Sec. V-A: how the example's part lies on the novel one. */
 struct PartAlignment {
-  RigidTransform X_NE;   ///< The paper's (R*, T*).
-  double scale{1.0};     ///< p_N = scale · R p_E + T.
-  double residual{0.0};  ///< Mean 6-D deviation, rms radii.
+  RigidTransform X_NE;       ///< The paper's (R*, T*).
+  double scale{1.0};         ///< p_N = scale · R p_E + T.
+  double residual{0.0};      ///< Mean 6-D deviation, rms radii.
   double mapped_share{0.0};  ///< Samples that pass the consistency check.
 };
 
 struct TransferRequest {
   std::shared_ptr<const HandModel> hand;
-  LabelledMesh example;                  ///< Whole example object, frame E.
-  LabelledMesh novel;                    ///< Whole novel object, frame N.
-  std::vector<Part> example_parts;       ///< Those of `example`.
-  std::vector<Part> novel_parts;         ///< Those of `novel`.
+  LabelledMesh example;             ///< Whole example object, frame E.
+  LabelledMesh novel;               ///< Whole novel object, frame N.
+  std::vector<Part> example_parts;  ///< Those of `example`.
+  std::vector<Part> novel_parts;    ///< Those of `novel`.
   RigidTransform X_NE;  ///< Whole-object alignment, from segmentation …
   double scale{1.0};    ///< … with its scale.
   /** For each novel part the grasp space of the example part of the same label;
@@ -127,8 +108,5 @@ Result<TransferResult> Transfer(const TransferRequest& request,
 
 /** The version of the engine, part of every grasp's provenance. */
 const char* EngineVersion();
-
-/** The name of an outcome on the wire, e.g. "palm_collision". */
-const char* ToString(TransferOutcome outcome);
 
 }  // namespace graspdb

@@ -47,7 +47,13 @@ Parameters MakePaperParameters() {
   p.active_learning.seed_samples = 30000;
   p.active_learning.rounds = 10;
   p.active_learning.queries_per_round = 1000;
-  p.mapping.scale = false;
+  p.swarm.aimed_share = 0.0;
+  p.swarm.niches = false;
+  p.swarm.hold_on_whole = false;
+  p.swarm.min_robustness = 0.0;
+  p.swarm.patience = p.swarm.iterations;
+  p.replan.iterations = 300;
+  p.replan.patience = 300;
   p.replan.move_wrist = false;
   return p;
 }

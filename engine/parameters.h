@@ -36,11 +36,13 @@ struct ContactParameters {
     f("cone_edges", self.cone_edges,
       ParameterInfo{"1", 8, 64, "Ferrari and Canny 1992 leave it open"});
     f("tolerance", self.tolerance,
-      ParameterInfo{"m", 1e-5, 0.005, "ours: hand and object this close touch"});
+      ParameterInfo{"m", 1e-5, 0.005,
+                    "ours: hand and object this close touch"});
     f("max_normal_angle", self.max_normal_angle,
       ParameterInfo{"rad", 0.0, 1.58, "ours: opposed within 45 degrees"});
     f("patch_angle", self.patch_angle,
-      ParameterInfo{"rad", 0.01, 3.15, "ours: one contact patch per 30 degrees"});
+      ParameterInfo{"rad", 0.01, 3.15,
+                    "ours: one contact patch per 30 degrees"});
     f("min_separation", self.min_separation,
       ParameterInfo{"m", 1e-4, 0.1, "ours: contacts of one patch, apart"});
     f("stable_epsilon", self.stable_epsilon,
@@ -109,6 +111,12 @@ struct SwarmParameters {
   double acceleration{2.05};
   double max_step{0.02};
   double max_turn{0.35};
+  int patience{6};
+  double aimed_share{0.5};
+  bool niches{true};
+  bool hold_on_whole{true};
+  double min_robustness{0.5};
+  int robust_copies{8};
   int target_grasps{300};
 
   template <class Self, class F>
@@ -120,7 +128,25 @@ struct SwarmParameters {
     f("max_step", self.max_step,
       ParameterInfo{"m", 1e-4, 0.5, "ours: wrist travel per iteration"});
     f("max_turn", self.max_turn,
-      ParameterInfo{"rad", 1e-3, 3.2, "ours: wrist and joint turn per iteration"});
+      ParameterInfo{"rad", 1e-3, 3.2,
+                    "ours: wrist and joint turn per iteration"});
+    f("patience", self.patience,
+      ParameterInfo{"1", 1, 1e6,
+                    "ours: iterations without gain, then restart"});
+    f("aimed_share", self.aimed_share,
+      ParameterInfo{"1", 0, 1,
+                    "ours: restarts aimed at the surface; paper: 0"});
+    f("niches", self.niches,
+      ParameterInfo{"1", 0, 1, "ours: one leader per approach direction"});
+    f("hold_on_whole", self.hold_on_whole,
+      ParameterInfo{"1", 0, 1,
+                    "ours: keep what holds on the whole example, too"});
+    f("min_robustness", self.min_robustness,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of perturbed copies that must hold"});
+    f("robust_copies", self.robust_copies,
+      ParameterInfo{"1", 1, 1000,
+                    "ours: copies while learning; 32 in reports"});
     f("target_grasps", self.target_grasps,
       ParameterInfo{"1", 1, 1e5, "ours: stop when so many distinct are found"});
   }
@@ -167,7 +193,7 @@ struct MappingParameters {
   double max_normal_angle{0.5235987755982988};
   int neighbours{6};
   double consistency{0.08};
-  bool scale{true};
+  bool scale{false};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -195,7 +221,8 @@ struct ReplanParameters {
   double quality_weight{20.0};
   double length_unit{0.01};
   double joint_range{0.35};
-  int iterations{300};
+  int iterations{60};
+  int patience{15};
   int extra_samples{20};
   double initial_temperature{10.0};
   double final_temperature{0.1};
@@ -216,8 +243,11 @@ struct ReplanParameters {
     f("length_unit", self.length_unit,
       ParameterInfo{"m", 1e-3, 1, "ours: Eq. (6) in centimetres"});
     f("joint_range", self.joint_range,
-      ParameterInfo{"rad", 0, 3.2, "ours: low and up about the example's joints"});
+      ParameterInfo{"rad", 0, 3.2,
+                    "ours: low and up about the example's joints"});
     f("iterations", self.iterations, ParameterInfo{"1", 0, 1e6, "ours"});
+    f("patience", self.patience,
+      ParameterInfo{"1", 1, 1e6, "ours: stop after so many without gain"});
     f("extra_samples", self.extra_samples,
       ParameterInfo{"1", 0, 1000, "paper Sec. V-B: 20 more when in collision"});
     f("initial_temperature", self.initial_temperature,
@@ -225,11 +255,14 @@ struct ReplanParameters {
     f("final_temperature", self.final_temperature,
       ParameterInfo{"1", 1e-9, 1e6, "ours"});
     f("move_wrist", self.move_wrist,
-      ParameterInfo{"1", 0, 1, "ours: four joints cannot meet nine conditions"});
+      ParameterInfo{"1", 0, 1,
+                    "ours: four joints cannot meet nine conditions"});
     f("trust_translation", self.trust_translation,
-      ParameterInfo{"m", 0, 0.02, "ours: wrist travel; section 8 allows 20 mm"});
+      ParameterInfo{"m", 0, 0.02,
+                    "ours: wrist travel; section 8 allows 20 mm"});
     f("trust_rotation", self.trust_rotation,
-      ParameterInfo{"rad", 0, 0.35, "ours: wrist turn; section 8 allows 20 deg"});
+      ParameterInfo{"rad", 0, 0.35,
+                    "ours: wrist turn; section 8 allows 20 deg"});
   }
   bool operator==(const ReplanParameters&) const = default;
 };
@@ -250,7 +283,8 @@ struct TransferLimits {
     f("max_target_distance", self.max_target_distance,
       ParameterInfo{"m", 0, 0.05, "ours: contact from its mapped target"});
     f("min_opposed_contacts", self.min_opposed_contacts,
-      ParameterInfo{"1", 2, 10, "ours: opposed contacts with a target, at least"});
+      ParameterInfo{"1", 2, 10,
+                    "ours: opposed contacts with a target, at least"});
   }
   bool operator==(const TransferLimits&) const = default;
 };
@@ -259,44 +293,52 @@ struct TransferLimits {
 struct SegmentationParameters {
   bool by_shape_diameter{false};
   int samples{1500};
-  int coarse_samples{220};
-  double normal_weight{0.3};
+  int coarse_samples{150};
+  double normal_weight{0.5};
   int refined_starts{8};
   double unary_sigma{0.12};
   double unary_cap{6.0};
-  double pairwise_weight{0.2};
+  double pairwise_weight{2.0};
   double min_island_share{0.02};
-  double max_residual{0.113};
+  double max_residual{0.12};
   double min_area_ratio{0.5};
   double max_area_ratio{2.0};
   double min_confidence{0.6};
+  int shape_diameter_clusters{10};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
     f("by_shape_diameter", self.by_shape_diameter,
-      ParameterInfo{"1", 0, 1, "paper Sec. VI-B; else from the labelled example"});
+      ParameterInfo{"1", 0, 1,
+                    "paper Sec. VI-B; else from the labelled example"});
     f("samples", self.samples, ParameterInfo{"1", 100, 1e5, "ours"});
     f("coarse_samples", self.coarse_samples,
       ParameterInfo{"1", 50, 1e5, "ours"});
     f("normal_weight", self.normal_weight,
-      ParameterInfo{"1", 0, 10, "ours: 6-D distance, lengths over the rms radius"});
+      ParameterInfo{"1", 0, 10,
+                    "ours: 6-D distance, lengths over the rms radius"});
     f("refined_starts", self.refined_starts,
       ParameterInfo{"1", 1, 72, "ours: coarse alignments that are refined"});
     f("unary_sigma", self.unary_sigma,
       ParameterInfo{"1", 1e-3, 10, "ours: rms radii"});
     f("unary_cap", self.unary_cap, ParameterInfo{"1", 0.1, 1e3, "ours"});
     f("pairwise_weight", self.pairwise_weight,
-      ParameterInfo{"1", 0, 1e3, "ours: times edge length over the rms radius"});
+      ParameterInfo{"1", 0, 1e3,
+                    "ours: times edge length over the rms radius"});
     f("min_island_share", self.min_island_share,
       ParameterInfo{"1", 0, 0.5, "ours: smaller islands go to the neighbour"});
     f("max_residual", self.max_residual,
-      ParameterInfo{"1", 0, 10, "ours: in category up to 0.113 / 0.052 / 0.092"});
+      ParameterInfo{"1", 0, 10,
+                    "ours: mugs reach 0.11; a larger one is foreign"});
     f("min_area_ratio", self.min_area_ratio,
       ParameterInfo{"1", 0, 1, "ours: a part's area share over the example's"});
     f("max_area_ratio", self.max_area_ratio,
-      ParameterInfo{"1", 1, 100, "ours: a part's area share over the example's"});
+      ParameterInfo{"1", 1, 100,
+                    "ours: a part's area share over the example's"});
     f("min_confidence", self.min_confidence,
       ParameterInfo{"1", 0, 1, "ours: below it the answer is 'unsure'"});
+    f("shape_diameter_clusters", self.shape_diameter_clusters,
+      ParameterInfo{"1", 1, 100, "ours: levels of thickness told apart"});
   }
   bool operator==(const SegmentationParameters&) const = default;
 };

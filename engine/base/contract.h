@@ -22,9 +22,9 @@ namespace internal {
 }  // namespace graspdb
 
 /** Checks a precondition in every build type. */
-#define GRASPDB_EXPECTS(condition)                                          \
-  do {                                                                      \
-    if (!(condition)) {                                                     \
-      ::graspdb::internal::FailContract(#condition, __FILE__, __LINE__);    \
-    }                                                                       \
+#define GRASPDB_EXPECTS(condition)                                       \
+  do {                                                                   \
+    if (!(condition)) {                                                  \
+      ::graspdb::internal::FailContract(#condition, __FILE__, __LINE__); \
+    }                                                                    \
   } while (false)

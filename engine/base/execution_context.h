@@ -25,11 +25,14 @@ class ExecutionContext {
   ExecutionContext& operator=(const ExecutionContext&) = delete;
 
   void Cancel() { cancelled_ = true; }
+  /** This one is cancelled, too, when the parent is; outlived by it. */
+  void set_parent(const ExecutionContext* parent) { parent_ = parent; }
   void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
   /** True once cancelled or past the deadline: finish up. */
   bool Cancelled() const {
-    return cancelled_ || (deadline_ && Clock::now() > *deadline_);
+    return cancelled_ || (deadline_ && Clock::now() > *deadline_) ||
+           (parent_ != nullptr && parent_->Cancelled());
   }
 
   void ReportProgress(const std::string& stage, double share) {
@@ -39,6 +42,7 @@ class ExecutionContext {
  private:
   std::atomic<bool> cancelled_{false};
   std::optional<Clock::time_point> deadline_;
+  const ExecutionContext* parent_{nullptr};
   ProgressCallback callback_;
 };
 

@@ -36,8 +36,7 @@ Random::Random(uint64_t seed) {
 }
 
 uint64_t Random::NextBits() {
-  const uint64_t result =
-      RotateLeft(state_[0] + state_[3], 23) + state_[0];
+  const uint64_t result = RotateLeft(state_[0] + state_[3], 23) + state_[0];
   const uint64_t t = state_[1] << 17;
   state_[2] ^= state_[0];
   state_[3] ^= state_[1];

@@ -35,7 +35,8 @@ class Random {
   Eigen::Vector3d NextInUnitBall();
   /** Uniform (Haar) over rotations. */
   Eigen::Matrix3d NextRotation();
-  /** Rotation about a uniform axis by an angle uniform in [0, max_angle] rad. */
+  /** Rotation about a uniform axis by an angle uniform in [0, max_angle] rad.
+   */
   Eigen::Matrix3d NextRotationWithin(double max_angle);
 
  private:

@@ -98,14 +98,14 @@ class [[nodiscard]] Result<void> {
 
 /** Evaluates a Result; returns its error from the calling function, or binds
  its value: `GRASPDB_TRY(mesh, ReadMesh(bytes));`. */
-#define GRASPDB_TRY(name, expression)                       \
-  auto name##_result = (expression);                        \
-  if (!name##_result) return name##_result.error();         \
+#define GRASPDB_TRY(name, expression)               \
+  auto name##_result = (expression);                \
+  if (!name##_result) return name##_result.error(); \
   auto& name = *name##_result
 
 /** The same for Result<void>. */
-#define GRASPDB_TRY_VOID(expression)                                      \
-  do {                                                                    \
-    if (auto void_result = (expression); !void_result)                    \
-      return void_result.error();                                         \
+#define GRASPDB_TRY_VOID(expression)                   \
+  do {                                                 \
+    if (auto void_result = (expression); !void_result) \
+      return void_result.error();                      \
   } while (false)

@@ -2,37 +2,28 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "engine/base/result.h"
+#include "engine/geometry/mesh_format.h"
 #include "engine/geometry/triangle_mesh.h"
 
 namespace graspdb {
 
-/** The mesh formats that ReadMesh() understands. */
-enum class MeshFormat { kObj, kStl, kPly };
-
-struct MeshLimits {
-  int64_t max_bytes{64 << 20};
-  int64_t max_triangles{400'000};
-};
-
-/** Names a format from its usual spellings ("obj", ".STL", "model/stl" …).
- @retval kInvalidArgument naming the formats known. */
-Result<MeshFormat> ParseMeshFormat(const std::string& name);
-
-/** Guesses from the file name if there is one, else from the first bytes.
- @retval kUnusableInput when neither tells. */
-Result<MeshFormat> GuessMeshFormat(std::span<const uint8_t> bytes,
-                                   const std::string& file_name);
-
-/** Decodes a triangle soup, exactly as in the file: one vertex per index, no
- weld, no repair; multiplied by metres_per_unit. Polygons are triangulated.
- References to other files are never opened. Hostile bytes may crash the decoder
- below, so a server calls this only in its sandboxed helper program.
+/** Decodes a triangle soup as the file has it: faces in the file's order,
+ polygons triangulated in place; the vertices that faces use, in the file's
+ order; coordinates in single precision times metres_per_unit. An STL file has
+ no vertices: corners at exactly the same position share one, in the order of
+ first mention. Nothing else is welded or repaired. Normals, textures, materials
+ and groups are skipped, references to other files are never opened. Hostile
+ bytes may crash the decoder below, so a server calls this only in its sandboxed
+ helper program.
  @retval kUnusableInput for empty, truncated, non-mesh bytes, indices out of
-   range, NaN or infinite coordinates; the message names the format tried.
- @retval kTooLarge over a limit, known before the bytes are decoded. */
+   range, NaN or infinite coordinates, no faces; the message names the format
+   tried.
+ @retval kTooLarge over a limit; also more vertices than three times the limit
+   on triangles. Known before anything is allocated for the content: lines, or
+   the counts in the header, are checked first, and these against the size.
+ @pre metres_per_unit > 0. */
 Result<TriangleMesh> ReadMesh(std::span<const uint8_t> bytes, MeshFormat format,
                               double metres_per_unit, const MeshLimits& limits);
 

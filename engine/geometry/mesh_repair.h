@@ -16,12 +16,28 @@ struct RepairedMesh {
   std::vector<std::string> repairs;
 };
 
-/** Makes one closed solid of a triangle soup: weld, drop degenerate and
- duplicate faces, orient, stitch, fill holes, unite or wrap several shells
- (alpha wrap), orient outward.
- A mesh that needs nothing keeps its vertices and faces in their order, exactly.
- @retval kUnusableInput when no solid can be made (zero area, all points
-   coplanar, …), with what is wrong in words. */
+/** Makes one closed solid of a triangle soup (metres): weld, drop degenerate
+ and duplicate faces, split edges at T-junctions, orient, stitch, fill holes,
+ cut self-intersections out, unite overlapping shells, drop loose fragments. If
+ that is not one solid, the whole is wrapped as a last resort (alpha wrap:
+ nothing narrower than 1/75 of the diagonal is entered, and the surface lies
+ within about 1/1000 of it). Every hole is closed, so a cup without thickness
+ becomes full; the volume is that of everything the shells enclose, cavities
+ included. A mesh that needs nothing keeps its vertices and faces in their
+ order, exactly. The result is closed, outward, connected and does not cross
+ itself.
+ @retval kUnusableInput when no solid can be made: no faces, coordinates that
+   are not finite, zero area, all points in one plane (thinner than 1/10,000 of
+   the diagonal), no volume enclosed, several solids apart from each other. */
 Result<RepairedMesh> RepairMesh(const TriangleMesh& soup);
+
+/** A mesh with at most max_triangles faces, as far as the topology permits, by
+ collapsing edges (Lindstrom and Turk 1998), which keeps the volume, above
+ 100,000 faces after merging the shortest edges; the very same mesh when it has
+ no more than max_triangles. The result is closed.
+ @pre The mesh is the closed manifold that RepairMesh() returns;
+   max_triangles >= 4.
+ @retval kInternal if the collapse breaks the mesh. */
+Result<TriangleMesh> Decimate(const TriangleMesh& mesh, int max_triangles);
 
 }  // namespace graspdb

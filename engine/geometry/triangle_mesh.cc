@@ -51,8 +51,7 @@ MassProperties CalcMassProperties(const TriangleMesh& mesh) {
   result.p_McCM = apex;
   if (result.volume != 0.0) result.p_McCM += moment / result.volume;
   for (const Eigen::Vector3d& p : mesh.vertices()) {
-    result.max_radius =
-        std::max(result.max_radius, (p - result.p_McCM).norm());
+    result.max_radius = std::max(result.max_radius, (p - result.p_McCM).norm());
   }
   return result;
 }

@@ -17,7 +17,7 @@ namespace graspdb {
 /** A point on a link where grasps like to touch the object. */
 struct HandContactPoint {
   int link{0};
-  Eigen::Vector3d p_L{Eigen::Vector3d::Zero()};     ///< In link frame L, m.
+  Eigen::Vector3d p_L{Eigen::Vector3d::Zero()};      ///< In link frame L, m.
   Eigen::Vector3d nhat_L{Eigen::Vector3d::UnitZ()};  ///< Out of the hand.
 };
 
@@ -81,9 +81,7 @@ class HandModel {
   const std::string& name() const { return data_.name; }
   const std::vector<HandLink>& links() const { return data_.links; }
   const std::vector<HandJoint>& joints() const { return data_.joints; }
-  const std::vector<HandActuator>& actuators() const {
-    return data_.actuators;
-  }
+  const std::vector<HandActuator>& actuators() const { return data_.actuators; }
   const std::vector<HandContactPoint>& contact_points() const {
     return data_.contact_points;
   }
@@ -93,9 +91,7 @@ class HandModel {
   double closing_force() const { return data_.closing_force; }
   int num_links() const { return static_cast<int>(data_.links.size()); }
   int num_joints() const { return static_cast<int>(data_.joints.size()); }
-  int num_actuators() const {
-    return static_cast<int>(data_.actuators.size());
-  }
+  int num_actuators() const { return static_cast<int>(data_.actuators.size()); }
   /** Link pairs (a < b) that are to be tested for self-collision. */
   const std::vector<std::pair<int, int>>& self_collision_pairs() const {
     return self_collision_pairs_;

@@ -20,7 +20,7 @@ struct HandAnnotations {
   struct Breakaway {
     std::string joint;           ///< When this one is blocked …
     std::string released_joint;  ///< … this one goes on …
-    double ratio{1.0};           ///< … at this multiple of the motor's travel.
+    double ratio{1.0};  ///< … at this multiple of the motor's travel.
   };
   struct ContactPoint {
     std::string link;

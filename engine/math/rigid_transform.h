@@ -6,8 +6,8 @@ namespace graspdb {
 
 /** The pose X_AB of frame B in frame A: p_A = R_AB p_B + p_AB. Metres. */
 struct RigidTransform {
-  Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};        ///< R_AB.
-  Eigen::Vector3d translation{Eigen::Vector3d::Zero()};  ///< p_AB, metres.
+  Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};  ///< R_AB.
+  Eigen::Vector3d translation{Eigen::Vector3d::Zero()};   ///< p_AB, metres.
 
   static RigidTransform Identity() { return {}; }
 

@@ -54,9 +54,8 @@ TEST(IsClosed, HoldsForASolidOnly) {
   EXPECT_FALSE(IsClosed(TriangleMesh()));
   // The same face twice, or one face turned over.
   EXPECT_FALSE(IsClosed(CalcUnion({open, open})));
-  const TriangleMesh flipped(
-      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-      {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+  const TriangleMesh flipped({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                             {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
   EXPECT_FALSE(IsClosed(flipped));
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/geometry/triangle_mesh.h"
+#include "engine/math/rigid_transform.h"
+
+namespace graspdb {
+
+/** A surface in FCL's bounding-volume tree: the judge of whether two surfaces
+ intersect. Immutable, shared by threads. */
+class CollisionShape {
+ public:
+  explicit CollisionShape(const TriangleMesh& mesh_A);
+  ~CollisionShape();
+  CollisionShape(CollisionShape&&) noexcept;
+  CollisionShape& operator=(CollisionShape&&) noexcept;
+
+  /** True when a triangle of this surface A meets one of the other, B. A solid
+   wholly inside the other one is not seen. */
+  bool Intersects(const CollisionShape& other,
+                  const RigidTransform& X_AB) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,818 @@
+#include "engine/geometry/mesh_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <new>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/bbox.h>
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/compute_normal.h>
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/manifoldness.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Polygon_mesh_processing/stitch_borders.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_placement.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Edge_length_cost.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_cost.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_placement.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Midpoint_placement.h>
+#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <CGAL/alpha_wrap_3.h>
+#include <fmt/core.h>
+
+#include "engine/base/contract.h"
+
+namespace graspdb {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+namespace sms = CGAL::Surface_mesh_simplification;
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using SurfaceMesh = CGAL::Surface_mesh<Point>;
+using Face = SurfaceMesh::Face_index;
+using Halfedge = SurfaceMesh::Halfedge_index;
+
+// Lengths as shares of the diagonal of the soup's box.
+constexpr double kWeldDistance = 1e-5;      // Also for T-junctions.
+constexpr double kDegenerateHeight = 1e-8;  // A triangle's smallest height.
+constexpr double kPlanarThickness = 1e-4;
+constexpr double kWrapAlpha = 1.0 / 75.0;
+constexpr double kWrapOffset = 1.0 / 1000.0;
+// The share of the offset that is taken back after wrapping.
+constexpr double kShrinking = 0.8;
+// A share of the diagonal cubed.
+constexpr double kSmallestVolume = 1e-6;
+// A shell whose caps have more than this share of its own area is a sheet.
+constexpr double kMostCapArea = 0.75;
+// What may be dropped: sheets by area, closed fragments by volume.
+constexpr double kMostSheetArea = 0.02;
+constexpr double kMostFragmentVolume = 0.02;
+// Where that makes the box smaller by this share of the diagonal, wrapping is
+// tried, which may reach what was dropped.
+constexpr double kMostLostExtent = 0.01;
+// Beyond these, mending step by step is slower than wrapping.
+constexpr std::size_t kMostShells = 100;
+constexpr std::size_t kMostBorderEdges = 20'000;
+// The cubes of the lengths, in edges, of all holes that are filled in the best
+// way.
+constexpr double kMostHoleWork = 1.5e7;
+// Above this, the shortest edges are merged first, down to half of it: half the
+// time of the better way for hardly visible edges.
+constexpr int kManyTriangles = 100'000;
+// Rounds of cutting crossing faces out, each with one more ring around them.
+constexpr int kCuttingRounds = 5;
+
+struct Soup {
+  std::vector<Point> points;
+  std::vector<std::array<std::size_t, 3>> faces;
+};
+
+std::string Count(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+// Collects the sentences; a step that did nothing says nothing.
+class Log {
+ public:
+  void Add(const char* verb, std::size_t count, const char* one,
+           const char* many) {
+    if (count > 0) {
+      sentences_.push_back(std::string(verb) + " " + Count(count, one, many));
+    }
+  }
+  void Add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
+  std::vector<std::string> sentences() const { return sentences_; }
+
+ private:
+  std::vector<std::string> sentences_;
+};
+
+Eigen::Vector3d ToEigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+Soup ToSoup(const TriangleMesh& mesh) {
+  Soup soup;
+  for (const Eigen::Vector3d& p : mesh.vertices()) {
+    soup.points.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const Eigen::Vector3i& t : mesh.triangles()) {
+    soup.faces.push_back({static_cast<std::size_t>(t[0]),
+                          static_cast<std::size_t>(t[1]),
+                          static_cast<std::size_t>(t[2])});
+  }
+  return soup;
+}
+
+SurfaceMesh ToSurfaceMesh(const Soup& soup) {
+  SurfaceMesh surface;
+  pmp::polygon_soup_to_polygon_mesh(soup.points, soup.faces, surface);
+  return surface;
+}
+
+void AppendTo(Soup& soup, const SurfaceMesh& surface) {
+  std::vector<std::size_t> index(surface.num_vertices() +
+                                 surface.number_of_removed_vertices());
+  for (const auto v : surface.vertices()) {
+    index[v] = soup.points.size();
+    soup.points.push_back(surface.point(v));
+  }
+  for (const Face f : surface.faces()) {
+    std::array<std::size_t, 3> face{};
+    int k = 0;
+    for (const auto v : vertices_around_face(surface.halfedge(f), surface)) {
+      face[k++] = index[v];
+    }
+    soup.faces.push_back(face);
+  }
+}
+
+TriangleMesh ToTriangleMesh(const SurfaceMesh& surface) {
+  Soup soup;
+  AppendTo(soup, surface);
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Point& p : soup.points) vertices.push_back(ToEigen(p));
+  std::vector<Eigen::Vector3i> triangles;
+  for (const auto& face : soup.faces) {
+    triangles.emplace_back(face[0], face[1], face[2]);
+  }
+  return TriangleMesh(std::move(vertices), std::move(triangles));
+}
+
+std::size_t CountShells(const SurfaceMesh& surface) {
+  std::vector<std::size_t> shell(surface.num_faces() +
+                                 surface.number_of_removed_faces());
+  return pmp::connected_components(surface, CGAL::make_property_map(shell));
+}
+
+bool IsOneSolid(const SurfaceMesh& surface) {
+  return surface.num_faces() > 0 && CGAL::is_closed(surface) &&
+         CountShells(surface) == 1 && !pmp::does_self_intersect(surface);
+}
+
+// True when there is nothing to repair. @pre Every vertex is used.
+bool IsSolid(const TriangleMesh& mesh) {
+  if (!IsClosed(mesh)) return false;
+  for (int f = 0; f < mesh.num_triangles(); ++f) {
+    if (mesh.area(f) == 0.0) return false;
+  }
+  if (CalcMassProperties(mesh).volume <=
+      kSmallestVolume * std::pow(mesh.diagonal(), 3)) {
+    return false;
+  }
+  const Soup soup = ToSoup(mesh);
+  return pmp::is_polygon_soup_a_polygon_mesh(soup.faces) &&
+         IsOneSolid(ToSurfaceMesh(soup));
+}
+
+// ---- The soup: before there is any topology.
+
+// The distance that the points keep from their best plane, roughly: through the
+// first point, the one farthest from it, and the one farthest from their line.
+double CalcThickness(const std::vector<Eigen::Vector3d>& points) {
+  const auto farthest = [&points](const auto& distance) {
+    Eigen::Vector3d best = points.front();
+    for (const Eigen::Vector3d& p : points) {
+      if (distance(p) > distance(best)) best = p;
+    }
+    return best;
+  };
+  const Eigen::Vector3d a = points.front();
+  const Eigen::Vector3d b = farthest(
+      [&a](const Eigen::Vector3d& p) { return (p - a).squaredNorm(); });
+  const Eigen::Vector3d axis = (b - a).normalized();
+  const Eigen::Vector3d c = farthest([&](const Eigen::Vector3d& p) {
+    return axis.cross(p - a).squaredNorm();
+  });
+  const Eigen::Vector3d normal = axis.cross(c - a).normalized();
+  const auto height = [&](const Eigen::Vector3d& p) {
+    return std::abs(normal.dot(p - a));
+  };
+  return height(farthest(height));
+}
+
+using Edge = std::pair<std::size_t, std::size_t>;
+
+Edge MakeEdge(std::size_t a, std::size_t b) { return std::minmax(a, b); }
+
+// The edges that belong to one face only, sorted.
+std::vector<Edge> FindBorderEdges(const Soup& soup) {
+  std::vector<Edge> edges;
+  for (const auto& face : soup.faces) {
+    for (int k = 0; k < 3; ++k) {
+      edges.push_back(MakeEdge(face[k], face[(k + 1) % 3]));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> border;
+  for (auto it = edges.begin(); it != edges.end();) {
+    const auto next = std::upper_bound(it, edges.end(), *it);
+    if (next - it == 1) border.push_back(*it);
+    it = next;
+  }
+  return border;
+}
+
+// For each vertex at an open edge, the first such one within the distance: by a
+// grid of cells wider than it, so that few have to look into a second cell.
+// Vertices inside a closed surface stay apart, as in two parts that touch.
+std::vector<std::size_t> FindWelds(const TriangleMesh& mesh, const Soup& soup,
+                                   double distance) {
+  std::vector<bool> is_open(soup.points.size(), false);
+  for (const auto& [a, b] : FindBorderEdges(soup)) {
+    is_open[a] = is_open[b] = true;
+  }
+  const double cell = 8.0 * distance;
+  std::unordered_map<uint64_t, std::vector<std::size_t>> grid;
+  std::vector<std::size_t> weld(soup.points.size());
+  std::iota(weld.begin(), weld.end(), 0);
+  for (std::size_t i = 0; i < weld.size(); ++i) {
+    if (!is_open[i]) continue;
+    const Eigen::Vector3d p = mesh.vertices()[i] - mesh.box_min();
+    const auto key = [&](double dx, double dy, double dz) {
+      const auto index = [cell](double x) {
+        return static_cast<uint64_t>(std::max(0.0, x) / cell);
+      };
+      return index(p.x() + dx) << 42 | index(p.y() + dy) << 21 |
+             index(p.z() + dz);
+    };
+    for (int corner = 0; corner < 8 && weld[i] == i; ++corner) {
+      const auto found = grid.find(key(corner & 1 ? distance : -distance,
+                                       corner & 2 ? distance : -distance,
+                                       corner & 4 ? distance : -distance));
+      if (found == grid.end()) continue;
+      for (const std::size_t j : found->second) {
+        if ((mesh.vertices()[j] - mesh.vertices()[i]).norm() <= distance) {
+          weld[i] = j;
+          break;
+        }
+      }
+    }
+    if (weld[i] == i) grid[key(0, 0, 0)].push_back(i);
+  }
+  return weld;
+}
+
+double CalcSmallestHeight(const Soup& soup,
+                          const std::array<std::size_t, 3>& face) {
+  const Eigen::Vector3d a = ToEigen(soup.points[face[0]]);
+  const Eigen::Vector3d b = ToEigen(soup.points[face[1]]);
+  const Eigen::Vector3d c = ToEigen(soup.points[face[2]]);
+  const double longest =
+      std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
+}
+
+TriangleMesh DropUnusedVertices(const TriangleMesh& mesh, Log& log) {
+  std::vector<int> index(mesh.vertices().size(), -1);
+  for (const Eigen::Vector3i& t : mesh.triangles()) {
+    for (const int v : t) index[v] = 0;
+  }
+  std::vector<Eigen::Vector3d> vertices;
+  for (std::size_t v = 0; v < index.size(); ++v) {
+    if (index[v] < 0) continue;
+    index[v] = static_cast<int>(vertices.size());
+    vertices.push_back(mesh.vertices()[v]);
+  }
+  log.Add("dropped", index.size() - vertices.size(), "unused vertex",
+          "unused vertices");
+  std::vector<Eigen::Vector3i> triangles;
+  for (const Eigen::Vector3i& t : mesh.triangles()) {
+    triangles.emplace_back(index[t[0]], index[t[1]], index[t[2]]);
+  }
+  return TriangleMesh(std::move(vertices), std::move(triangles));
+}
+
+// Welds, drops degenerate and duplicate faces and what no face uses. In a
+// closed surface a face without height does its duty and stays.
+Soup MakeCleanSoup(const TriangleMesh& mesh, Log& log) {
+  const Soup all = ToSoup(mesh);
+  const bool closed = IsClosed(mesh);
+  const std::vector<std::size_t> weld =
+      FindWelds(mesh, all, kWeldDistance * mesh.diagonal());
+  std::set<std::array<std::size_t, 3>> seen;
+  std::vector<std::array<std::size_t, 3>> faces;
+  std::size_t degenerate = 0;
+  std::size_t duplicate = 0;
+  for (std::array<std::size_t, 3> face : all.faces) {
+    for (std::size_t& v : face) v = weld[v];
+    const bool collapsed =
+        face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+    if (collapsed || (!closed && CalcSmallestHeight(all, face) <=
+                                     kDegenerateHeight * mesh.diagonal())) {
+      ++degenerate;
+      continue;
+    }
+    std::array<std::size_t, 3> corners = face;
+    std::sort(corners.begin(), corners.end());
+    if (seen.insert(corners).second) {
+      faces.push_back(face);
+    } else {
+      ++duplicate;
+    }
+  }
+  std::vector<bool> used(all.points.size(), false);
+  for (const auto& face : faces) {
+    for (const std::size_t v : face) used[v] = true;
+  }
+  Soup soup;
+  std::size_t welded = 0;
+  std::vector<std::size_t> index(all.points.size());
+  for (std::size_t v = 0; v < all.points.size(); ++v) {
+    index[v] = soup.points.size();
+    if (used[v]) soup.points.push_back(all.points[v]);
+    if (weld[v] != v) ++welded;
+  }
+  for (const auto& face : faces) {
+    soup.faces.push_back({index[face[0]], index[face[1]], index[face[2]]});
+  }
+  log.Add("welded", welded, "vertex", "vertices");
+  log.Add("dropped", degenerate, "degenerate face", "degenerate faces");
+  log.Add("dropped", duplicate, "duplicate face", "duplicate faces");
+  return soup;
+}
+
+// The border vertices that lie within the distance of a border edge's inside,
+// in order from the edge's first vertex to its second.
+std::map<Edge, std::vector<std::size_t>> FindTJunctions(const Soup& soup,
+                                                        double distance) {
+  std::map<Edge, std::vector<std::size_t>> junctions;
+  const std::vector<Edge> border = FindBorderEdges(soup);
+  if (border.size() > kMostBorderEdges) return junctions;
+  std::set<std::size_t> border_vertices;
+  for (const Edge& edge : border) {
+    border_vertices.insert({edge.first, edge.second});
+  }
+  std::vector<std::pair<double, std::size_t>> by_x;
+  for (const std::size_t v : border_vertices) {
+    by_x.emplace_back(soup.points[v].x(), v);
+  }
+  std::sort(by_x.begin(), by_x.end());
+  for (const Edge& edge : border) {
+    const Eigen::Vector3d a = ToEigen(soup.points[edge.first]);
+    const Eigen::Vector3d b = ToEigen(soup.points[edge.second]);
+    const double length = (b - a).norm();
+    const Eigen::Vector3d direction = (b - a) / length;
+    std::vector<std::pair<double, std::size_t>> inside;
+    const double end = std::max(a.x(), b.x()) + distance;
+    for (auto it = std::lower_bound(
+             by_x.begin(), by_x.end(),
+             std::pair(std::min(a.x(), b.x()) - distance, std::size_t{0}));
+         it != by_x.end() && it->first <= end; ++it) {
+      const Eigen::Vector3d to_v = ToEigen(soup.points[it->second]) - a;
+      const double along = direction.dot(to_v);
+      if (along > distance && along < length - distance &&
+          (to_v - along * direction).norm() <= distance) {
+        inside.emplace_back(along, it->second);
+      }
+    }
+    std::sort(inside.begin(), inside.end());
+    for (const auto& [along, v] : inside) junctions[edge].push_back(v);
+  }
+  return junctions;
+}
+
+// Cuts faces so that no vertex lies inside another face's border edge.
+void SplitAtTJunctions(Soup& soup, double distance, Log& log) {
+  auto junctions = FindTJunctions(soup, distance);
+  log.Add("split", junctions.size(), "edge at T-junctions",
+          "edges at T-junctions");
+  std::vector<std::array<std::size_t, 3>> faces;
+  for (const auto& whole : soup.faces) {
+    std::vector<std::array<std::size_t, 3>> work{whole};
+    while (!work.empty()) {
+      const auto face = work.back();
+      work.pop_back();
+      int k = 0;
+      auto found = junctions.end();
+      for (; k < 3 && found == junctions.end(); ++k) {
+        found = junctions.find(MakeEdge(face[k], face[(k + 1) % 3]));
+      }
+      if (found == junctions.end()) {
+        faces.push_back(face);
+        continue;
+      }
+      // Split at the edge's first vertex; what is left of the edge inherits the
+      // others, again in order from its smaller index on.
+      const std::size_t v = found->second.front();
+      const std::size_t end = found->first.second;
+      std::vector<std::size_t> others(found->second.begin() + 1,
+                                      found->second.end());
+      junctions.erase(found);
+      if (v > end) std::reverse(others.begin(), others.end());
+      if (!others.empty()) junctions[MakeEdge(v, end)] = std::move(others);
+      const std::size_t a = face[k - 1];
+      const std::size_t b = face[k % 3];
+      const std::size_t c = face[(k + 1) % 3];
+      if (v == c) continue;  // The face is a sliver along its own edge.
+      work.push_back({v, b, c});
+      work.push_back({a, v, c});
+    }
+  }
+  soup.faces = std::move(faces);
+}
+
+// Consistent winding; splits edges and vertices where more than two faces or
+// one fan meet.
+void Orient(Soup& soup, Log& log) {
+  const auto before = soup.faces;
+  pmp::orient_polygon_soup(soup.points, soup.faces);
+  std::size_t turned = 0;
+  for (std::size_t f = 0; f < before.size(); ++f) {
+    const auto& face = soup.faces[f];
+    // Vertices may have been split: compare positions, not indices.
+    const auto at = [&](std::size_t v) { return soup.points[v]; };
+    const auto same = [&](int shift) {
+      for (int k = 0; k < 3; ++k) {
+        if (at(face[k]) != at(before[f][(k + shift) % 3])) return false;
+      }
+      return true;
+    };
+    if (!same(0) && !same(1) && !same(2)) ++turned;
+  }
+  log.Add("turned", turned, "face to agree with its neighbours",
+          "faces to agree with their neighbours");
+}
+
+// ---- Shells: manifold, connected surfaces.
+
+// Closes every hole in the best way, which takes the cube of its length at
+// worst, as long as that is affordable; else by a fan about its middle.
+// @returns the number of faces added.
+std::size_t FillHoles(SurfaceMesh& shell, std::size_t* holes = nullptr) {
+  std::vector<Halfedge> borders;
+  pmp::extract_boundary_cycles(shell, std::back_inserter(borders));
+  std::vector<Face> added;
+  const std::size_t before = shell.num_faces();
+  double work = 0.0;
+  for (const Halfedge border : borders) {
+    std::size_t length = 0;
+    Kernel::Vector_3 sum = CGAL::NULL_VECTOR;
+    for (const auto v : vertices_around_face(border, shell)) {
+      ++length;
+      sum += shell.point(v) - CGAL::ORIGIN;
+    }
+    const double cube = std::pow(static_cast<double>(length), 3);
+    if (work + cube <= kMostHoleWork) {
+      work += cube;
+      pmp::triangulate_hole(shell, border, std::back_inserter(added));
+    } else {
+      CGAL::Euler::fill_hole(border, shell);
+      const Halfedge spoke = CGAL::Euler::add_center_vertex(border, shell);
+      shell.point(shell.target(spoke)) =
+          CGAL::ORIGIN + sum / static_cast<double>(length);
+    }
+  }
+  if (holes != nullptr) *holes += borders.size();
+  return shell.num_faces() - before;
+}
+
+std::set<Face> FindCrossingFaces(const SurfaceMesh& shell) {
+  std::vector<std::pair<Face, Face>> pairs;
+  pmp::self_intersections(shell, std::back_inserter(pairs));
+  std::set<Face> faces;
+  for (const auto& [f, g] : pairs) faces.insert({f, g});
+  return faces;
+}
+
+void AddRing(const SurfaceMesh& shell, std::set<Face>& faces) {
+  std::set<Face> ring;
+  for (const Face f : faces) {
+    for (const Halfedge h : halfedges_around_face(shell.halfedge(f), shell)) {
+      for (const Face g : faces_around_target(h, shell)) {
+        if (g != SurfaceMesh::null_face()) ring.insert(g);
+      }
+    }
+  }
+  faces.merge(ring);
+}
+
+// Cuts faces that cross each other out of a closed shell and fills the gap, in
+// wider and wider rings.
+// @returns the number of faces cut; nothing when the shell resists.
+std::optional<std::size_t> CutSelfIntersections(SurfaceMesh& shell) {
+  std::size_t cut = 0;
+  for (int round = 0; round < kCuttingRounds; ++round) {
+    std::set<Face> faces = FindCrossingFaces(shell);
+    if (faces.empty()) return cut;
+    for (int ring = 0; ring < round; ++ring) AddRing(shell, faces);
+    if (2 * faces.size() > shell.num_faces()) return std::nullopt;
+    cut += faces.size();
+    for (const Face f : faces) {
+      CGAL::Euler::remove_face(shell.halfedge(f), shell);
+    }
+    shell.collect_garbage();
+    pmp::duplicate_non_manifold_vertices(shell);
+    pmp::keep_largest_connected_components(shell, 1);
+    shell.collect_garbage();
+    FillHoles(shell);
+    if (!CGAL::is_closed(shell)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::vector<SurfaceMesh> SplitShells(const SurfaceMesh& surface) {
+  if (CountShells(surface) == 1) return {surface};
+  std::vector<SurfaceMesh> shells;
+  pmp::split_connected_components(surface, shells);
+  return shells;
+}
+
+struct MendedShells {
+  std::vector<SurfaceMesh> solids;
+  std::vector<SurfaceMesh> sheets;  // No solids by themselves.
+  double sheet_area{0.0};           // A share of the whole.
+};
+
+MendedShells MendShells(const std::vector<SurfaceMesh>& shells,
+                        double smallest_volume, Log& log) {
+  MendedShells mended;
+  std::size_t holes = 0;
+  std::size_t added = 0;
+  std::size_t cut = 0;
+  std::size_t turned = 0;
+  double area_of_all = 0.0;
+  for (const SurfaceMesh& shell : shells) {
+    SurfaceMesh solid = shell;
+    const double area = pmp::area(shell);
+    area_of_all += area;
+    std::size_t holes_here = 0;
+    const std::size_t added_here = FillHoles(solid, &holes_here);
+    const bool is_sheet = !CGAL::is_closed(solid) ||
+                          pmp::area(solid) > (1.0 + kMostCapArea) * area;
+    SurfaceMesh filled = is_sheet ? shell : solid;
+    const auto cut_here = is_sheet ? std::nullopt : CutSelfIntersections(solid);
+    if (!cut_here || std::abs(pmp::volume(solid)) < smallest_volume) {
+      mended.sheets.push_back(std::move(filled));
+      mended.sheet_area += area;
+      continue;
+    }
+    if (!pmp::is_outward_oriented(solid)) {
+      pmp::reverse_face_orientations(solid);
+      ++turned;
+    }
+    holes += holes_here;
+    added += added_here;
+    cut += *cut_here;
+    mended.solids.push_back(std::move(solid));
+  }
+  mended.sheet_area /= area_of_all;
+  if (holes > 0) {
+    log.Add(fmt::format("filled {} with {}", Count(holes, "hole", "holes"),
+                        Count(added, "face", "faces")));
+  }
+  log.Add("cut out and filled", cut, "face that crossed others",
+          "faces that crossed others");
+  log.Add("turned", turned, "shell that was inside out",
+          "shells that were inside out");
+  return mended;
+}
+
+// The union of all; nothing when it is no manifold.
+std::optional<SurfaceMesh> Unite(const std::vector<SurfaceMesh>& solids) {
+  SurfaceMesh whole = solids.front();
+  for (std::size_t i = 1; i < solids.size(); ++i) {
+    SurfaceMesh other = solids[i];
+    SurfaceMesh united;
+    if (!pmp::corefine_and_compute_union(
+            whole, other, united,
+            CGAL::parameters::throw_on_self_intersection(true))) {
+      return std::nullopt;
+    }
+    united.collect_garbage();
+    whole = std::move(united);
+  }
+  if (!CutSelfIntersections(whole)) return std::nullopt;
+  return whole;
+}
+
+// Keeps the largest piece when all others are fragments, else changes nothing.
+// @returns whether one piece is left.
+bool DropFragments(SurfaceMesh& surface, Log& log) {
+  std::vector<SurfaceMesh> pieces = SplitShells(surface);
+  if (pieces.size() == 1) return true;
+  std::vector<double> volumes;
+  for (const SurfaceMesh& piece : pieces) {
+    volumes.push_back(std::abs(pmp::volume(piece)));
+  }
+  const auto largest = std::max_element(volumes.begin(), volumes.end());
+  const double share =
+      1.0 - *largest / std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  if (share > kMostFragmentVolume) return false;
+  surface = pieces[static_cast<std::size_t>(largest - volumes.begin())];
+  log.Add(
+      fmt::format("dropped {} ({:.2g} % of the volume)",
+                  Count(pieces.size() - 1, "loose fragment", "loose fragments"),
+                  100.0 * share));
+  return true;
+}
+
+// How far the surface's box falls short of the mesh's at most, m.
+double CalcLostExtent(const SurfaceMesh& surface, const TriangleMesh& mesh) {
+  const CGAL::Bbox_3 box = pmp::bbox(surface);
+  double lost = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    lost = std::max(
+        {lost, box.min(i) - mesh.box_min()[i], mesh.box_max()[i] - box.max(i)});
+  }
+  return lost;
+}
+
+// One solid out of closed shells and sheets without wrapping, if that can be.
+std::optional<SurfaceMesh> Assemble(const MendedShells& mended, Log& log) {
+  if (mended.solids.empty() || mended.sheet_area > kMostSheetArea) {
+    return std::nullopt;
+  }
+  auto whole = Unite(mended.solids);
+  if (!whole) return std::nullopt;
+  if (mended.solids.size() > 1) {
+    log.Add("united", mended.solids.size(), "shell", "shells");
+  }
+  log.Add("dropped", mended.sheets.size(), "small open sheet",
+          "small open sheets");
+  if (!DropFragments(*whole, log) || !IsOneSolid(*whole)) return std::nullopt;
+  return whole;
+}
+
+// The wrap moved inwards by a distance, so that it lies where the mesh is; the
+// wrap itself where that would make it cross itself.
+SurfaceMesh Shrink(const SurfaceMesh& wrap, double distance) {
+  SurfaceMesh shrunk = wrap;
+  for (const auto v : wrap.vertices()) {
+    const Kernel::Vector_3 normal = pmp::compute_vertex_normal(v, wrap);
+    shrunk.point(v) = wrap.point(v) - distance * normal;
+  }
+  return pmp::does_self_intersect(shrunk) ? wrap : shrunk;
+}
+
+SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal, Log& log) {
+  SurfaceMesh wrap;
+  const double alpha = kWrapAlpha * diagonal;
+  const double offset = kWrapOffset * diagonal;
+  Soup soup;
+  AppendTo(soup, surface);
+  CGAL::alpha_wrap_3(soup.points, soup.faces, alpha, offset, wrap);
+  log.Add(fmt::format("wrapped {}, closing gaps of up to {:.2g} mm",
+                      Count(soup.faces.size(), "face", "faces"), 1e3 * alpha));
+  return Shrink(wrap, kShrinking * offset);
+}
+
+Error MakeError(std::string message, std::string hint) {
+  return Error{ErrorCode::kUnusableInput, std::move(message), std::move(hint)};
+}
+
+constexpr char kCheckHint[] =
+    "Check the mesh in a mesh editor; a closed surface is needed.";
+
+std::optional<Error> FindHopelessness(const TriangleMesh& mesh) {
+  if (mesh.num_triangles() == 0) {
+    return MakeError("the mesh has no faces", kCheckHint);
+  }
+  for (const Eigen::Vector3d& p : mesh.vertices()) {
+    if (!p.allFinite()) {
+      return MakeError("the mesh has a coordinate that is not finite",
+                       kCheckHint);
+    }
+  }
+  const double diagonal = mesh.diagonal();
+  if (!(mesh.total_area() > kDegenerateHeight * diagonal * diagonal)) {
+    return MakeError("the mesh's faces have no area", kCheckHint);
+  }
+  if (CalcThickness(mesh.vertices()) < kPlanarThickness * diagonal) {
+    return MakeError("all points of the mesh lie in one plane", kCheckHint);
+  }
+  return std::nullopt;
+}
+
+struct Mended {
+  SurfaceMesh solid;
+  Log log;
+};
+
+// Everything but wrapping; nothing when that makes no solid of it.
+// @param rest  Receives what is to be wrapped in that case.
+std::optional<Mended> Mend(Soup soup, double diagonal, Log log, Mended* rest) {
+  Orient(soup, log);
+  SurfaceMesh surface = ToSurfaceMesh(soup);
+  log.Add("stitched", pmp::stitch_borders(surface), "pair of edges",
+          "pairs of edges");
+  *rest = {surface, log};
+  if (CountShells(surface) > kMostShells) return std::nullopt;
+  const MendedShells mended = MendShells(
+      SplitShells(surface), kSmallestVolume * std::pow(diagonal, 3), log);
+  *rest = {SurfaceMesh(), log};
+  for (const auto* shells : {&mended.solids, &mended.sheets}) {
+    for (const SurfaceMesh& shell : *shells) rest->solid.join(shell);
+  }
+  try {
+    if (auto solid = Assemble(mended, log)) return Mended{*solid, log};
+  } catch (const CGAL::Failure_exception&) {
+    // A degeneracy that CGAL does not cope with.
+  } catch (const pmp::Corefinement::Self_intersection_exception&) {
+  }
+  return std::nullopt;
+}
+
+Result<RepairedMesh> Repair(const TriangleMesh& mesh, Log log) {
+  const double diagonal = mesh.diagonal();
+  Soup soup = MakeCleanSoup(mesh, log);
+  if (soup.faces.empty()) {
+    return MakeError("the mesh's faces have no area", kCheckHint);
+  }
+  SplitAtTJunctions(soup, kWeldDistance * diagonal, log);
+  Mended rest;
+  auto mended = Mend(std::move(soup), diagonal, log, &rest);
+  if (!mended ||
+      CalcLostExtent(mended->solid, mesh) > kMostLostExtent * diagonal) {
+    Mended wrapped{Wrap(rest.solid, diagonal, rest.log), rest.log};
+    const bool in_one_piece = CountShells(wrapped.solid) == 1;
+    if (!in_one_piece && !mended &&
+        !DropFragments(wrapped.solid, wrapped.log)) {
+      return MakeError(
+          fmt::format("the mesh holds {} solids apart from each other",
+                      CountShells(wrapped.solid)),
+          "Send one object per file.");
+    }
+    if (in_one_piece || !mended) mended = std::move(wrapped);
+  }
+  if (!IsOneSolid(mended->solid) ||
+      pmp::volume(mended->solid) < kSmallestVolume * std::pow(diagonal, 3)) {
+    return MakeError("the mesh encloses no volume", kCheckHint);
+  }
+  return RepairedMesh{ToTriangleMesh(mended->solid), mended->log.sentences()};
+}
+
+// Collapses the cheapest edges until so many triangles are left, without
+// turning any face over.
+template <typename Cost, typename Placement>
+void CollapseEdges(SurfaceMesh& surface, int max_triangles, const Cost& cost,
+                   const Placement& placement) {
+  const std::size_t edges = static_cast<std::size_t>(max_triangles) / 2 * 3;
+  sms::edge_collapse(
+      surface, sms::Count_stop_predicate<SurfaceMesh>(edges + 1),
+      CGAL::parameters::get_cost(cost).get_placement(
+          sms::Bounded_normal_change_placement<Placement>(placement)));
+  surface.collect_garbage();
+}
+
+}  // namespace
+
+Result<RepairedMesh> RepairMesh(const TriangleMesh& soup) {
+  Log log;
+  const TriangleMesh mesh = DropUnusedVertices(soup, log);
+  if (auto error = FindHopelessness(mesh)) return *std::move(error);
+  try {
+    if (IsSolid(mesh)) return RepairedMesh{mesh, log.sentences()};
+    return Repair(mesh, std::move(log));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return MakeError("no closed solid could be made of the mesh", kCheckHint);
+  }
+}
+
+Result<TriangleMesh> Decimate(const TriangleMesh& mesh, int max_triangles) {
+  GRASPDB_EXPECTS(max_triangles >= 4);
+  if (mesh.num_triangles() <= max_triangles) return mesh;
+  GRASPDB_EXPECTS(IsClosed(mesh));
+  SurfaceMesh surface = ToSurfaceMesh(ToSoup(mesh));
+  try {
+    if (mesh.num_triangles() > kManyTriangles) {
+      CollapseEdges(surface, std::max(max_triangles, kManyTriangles / 2),
+                    sms::Edge_length_cost<SurfaceMesh>(),
+                    sms::Midpoint_placement<SurfaceMesh>());
+    }
+    CollapseEdges(surface, max_triangles,
+                  sms::LindstromTurk_cost<SurfaceMesh>(),
+                  sms::LindstromTurk_placement<SurfaceMesh>());
+    SurfaceMesh mended = surface;
+    if (CutSelfIntersections(mended)) surface = std::move(mended);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return Error{ErrorCode::kInternal, "the mesh could not be simplified"};
+  }
+  if (!CGAL::is_closed(surface)) {
+    return Error{ErrorCode::kInternal, "the simplified mesh is not closed"};
+  }
+  return ToTriangleMesh(surface);
+}
+
+}  // namespace graspdb

@@ -1,0 +1,132 @@
+#include "engine/hand/hand_shape.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/contract.h"
+
+namespace graspdb {
+namespace {
+
+// As coarse as the distance field's error: finer patches would prove no more.
+constexpr double kPatchRadius = 0.0015;
+// Estimates look closer.
+constexpr double kEstimateRadius = 0.0003;
+
+// The joints of `link` and its ancestors, the nearest first.
+std::vector<int> ListJointsTowardsBase(const HandModel& hand, int link) {
+  std::vector<int> joints;
+  for (int i = link; i > 0; i = hand.links()[i].parent) {
+    joints.push_back(hand.links()[i].joint);
+  }
+  return joints;
+}
+
+}  // namespace
+
+HandShape::HandShape(std::shared_ptr<const HandModel> model)
+    : model_(std::move(model)) {
+  const HandModel& hand = *model_;
+  links_.resize(hand.num_links());
+  reach_.assign(hand.num_links(), 0.0);
+  motion_bound_.assign(hand.num_links(),
+                       std::vector<double>(hand.num_joints(), 0.0));
+  for (int i = 0; i < hand.num_links(); ++i) {
+    TriangleMesh mesh = CalcUnion(hand.links()[i].pieces_L);
+    if (mesh.num_triangles() == 0) continue;
+    SphereTree tree(mesh, kPatchRadius);
+    SurfaceIndex index(mesh);
+    CollisionShape shape(mesh);
+    // Radius about the nearest joint's origin, then about its ancestors': each
+    // joint origin is a fixed distance (plus slide travel) from the next.
+    double radius = tree.center().norm() + tree.radius();
+    for (const int j : ListJointsTowardsBase(hand, i)) {
+      const HandJoint& joint = hand.joints()[j];
+      if (joint.type == JointType::kPrismatic) {
+        motion_bound_[i][j] = 1.0;
+        radius += std::max(std::abs(joint.lower), std::abs(joint.upper));
+      } else {
+        motion_bound_[i][j] = radius;
+      }
+      radius += joint.X_PJ.translation.norm();
+    }
+    reach_[i] = radius;
+    links_[i].emplace(LinkShape{std::move(mesh), std::move(tree),
+                                std::move(index), std::move(shape)});
+  }
+  for (const HandActuator& actuator : hand.actuators()) {
+    std::vector<std::vector<int>>& groups = chain_links_.emplace_back();
+    groups.resize(actuator.joints.size());
+    for (int i = 1; i < hand.num_links(); ++i) {
+      // The chain's joint that is nearest to the link owns it.
+      for (const int j : ListJointsTowardsBase(hand, i)) {
+        const auto found =
+            std::find(actuator.joints.begin(), actuator.joints.end(), j);
+        if (found == actuator.joints.end()) continue;
+        groups[found - actuator.joints.begin()].push_back(i);
+        break;
+      }
+    }
+  }
+}
+
+double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
+                    const Solid& solid, double enough) {
+  const DistanceField& field = solid.field();
+  const auto distance = [&](const Eigen::Vector3d& p_L) {
+    return field.Calc(X_OL * p_L);
+  };
+  return link.tree.CalcLowerBound(distance, enough + field.max_error()) -
+         field.max_error();
+}
+
+double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
+                   const Solid& solid) {
+  return link.tree.EstimateMinimum(
+      [&](const Eigen::Vector3d& p_L) {
+        return solid.field().Calc(X_OL * p_L);
+      },
+      kEstimateRadius);
+}
+
+bool LinkCollides(const LinkShape& link, const RigidTransform& X_OL,
+                  const Solid& solid) {
+  if (CalcGapBound(link, X_OL, solid, 0.0) > 0.0) return false;
+  if (solid.shape().Intersects(link.shape, X_OL)) return true;
+  // No surfaces cross: either free, or wholly inside.
+  const Eigen::Vector3d p_O = X_OL * link.tree.patches()[0].p_L;
+  return solid.field().Calc(p_O) < solid.field().max_error() &&
+         solid.index().CalcSignedDistance(p_O) < 0.0;
+}
+
+int FindCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
+                      const std::vector<RigidTransform>& X_HL,
+                      const Solid& solid) {
+  for (int i = 0; i < hand.model().num_links(); ++i) {
+    if (hand.link(i) && LinkCollides(*hand.link(i), X_OH * X_HL[i], solid)) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+std::optional<std::pair<int, int>> FindSelfCollision(
+    const HandShape& hand, const std::vector<RigidTransform>& X_HL) {
+  for (const auto& [a, b] : hand.model().self_collision_pairs()) {
+    if (!hand.link(a) || !hand.link(b)) continue;
+    const SphereTree& tree_A = hand.link(a)->tree;
+    const SphereTree& tree_B = hand.link(b)->tree;
+    const RigidTransform X_AB = X_HL[a].Inverse() * X_HL[b];
+    const double reach = tree_A.radius() + tree_B.radius();
+    if ((X_AB * tree_B.center() - tree_A.center()).squaredNorm() >
+        reach * reach) {
+      continue;
+    }
+    if (hand.link(a)->shape.Intersects(hand.link(b)->shape, X_AB)) {
+      return std::pair(a, b);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace graspdb

@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "engine/base/random.h"
+#include "engine/geometry/surface_sampling.h"
+#include "engine/grasp_engine.h"
+#include "engine/pipeline/source_grasps.h"
+#include "engine/pipeline/thread_arena.h"
+#include "engine/planning/grasp_evaluator.h"
+#include "engine/quality/epsilon_quality.h"
+#include "engine/quality/wrench_space.h"
+#include "engine/registration/surface_alignment.h"
+#include "engine/transfer/contact_map.h"
+#include "engine/transfer/local_replanner.h"
+
+namespace graspdb {
+namespace {
+
+// What the streams of random numbers are for.
+enum Stream : uint64_t {
+  kSources,
+  kSamplesE,
+  kSamplesN,
+  kReplan,
+  kAssemble,
+  kRobust
+};
+
+// A novel part with everything that its source grasps share.
+struct PartPair {
+  const Part* part_E{nullptr};
+  std::unique_ptr<Solid> solid_E;
+  std::unique_ptr<Solid> solid_N;
+  SurfaceAlignment alignment;
+  std::unique_ptr<ContactMap> map;
+};
+
+class Transferrer {
+ public:
+  Transferrer(const TransferRequest& request, ExecutionContext& context)
+      : request_(request),
+        parameters_(request.parameters),
+        context_(context),
+        hand_(request.hand) {}
+
+  Result<TransferResult> Run() {
+    // The forty are fixed before the novel object is looked at.
+    TransferResult result;
+    for (size_t p = 0; p < request_.grasp_spaces.size(); ++p) {
+      if (!request_.grasp_spaces[p]) continue;
+      for (const int source : DrawSourceGrasps(
+               request_.grasp_spaces[p]->grasps, request_.sources_per_part,
+               DeriveSeed(request_.seed, {kSources, p}))) {
+        TransferRecord record;
+        record.part = static_cast<int>(p);
+        record.source_grasp = source;
+        result.records.push_back(std::move(record));
+      }
+    }
+    context_.ReportProgress("aligning", 0.0);
+    Prepare(result);
+    if (context_.Cancelled()) {
+      return Error{ErrorCode::kCancelled, "the transfer was cancelled"};
+    }
+    std::atomic<int> done{0};
+    std::mutex progress_mutex;
+    std::atomic<bool> complete{true};
+    tbb::parallel_for(size_t{0}, result.records.size(), [&](size_t i) {
+      if (context_.Cancelled()) {
+        complete = false;
+        return;
+      }
+      TransferOne(result.records[i]);
+      const double share = static_cast<double>(++done) /
+                           static_cast<double>(result.records.size());
+      const std::lock_guard lock(progress_mutex);
+      context_.ReportProgress("transferring", 0.1 + 0.9 * share);
+    });
+    result.complete = complete;
+    return result;
+  }
+
+ private:
+  // Solids, alignments and contact maps of all wanted parts.
+  void Prepare(TransferResult& result) {
+    const int count = static_cast<int>(request_.novel_parts.size());
+    pairs_.resize(count);
+    result.alignments.resize(count);
+    mass_E_ = CalcMassProperties(request_.example.mesh_O);
+    tbb::parallel_for(-1, count, [&](int p) {
+      if (p < 0) {
+        if (request_.assemble) {
+          whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O);
+        }
+      } else if (request_.grasp_spaces[p]) {
+        PreparePart(p, result.alignments[p]);
+      }
+    });
+  }
+
+  void PreparePart(int p, PartAlignment& alignment) {
+    PartPair& pair = pairs_[p];
+    const Part& part_N = request_.novel_parts[p];
+    const auto found = std::find_if(
+        request_.example_parts.begin(), request_.example_parts.end(),
+        [&part_N](const Part& part) { return part.label == part_N.label; });
+    if (found == request_.example_parts.end()) return;
+    pair.part_E = &*found;
+    pair.solid_E =
+        std::make_unique<Solid>(found->solid_O, found->num_surface_faces);
+    pair.solid_N =
+        std::make_unique<Solid>(part_N.solid_O, part_N.num_surface_faces);
+    const MappingParameters& mapping = parameters_.mapping;
+    const SurfaceSamples samples_E =
+        SamplePoissonDisk(found->solid_O, mapping.samples,
+                          DeriveSeed(request_.seed, {kSamplesE, uint64_t(p)}),
+                          found->num_surface_faces);
+    const SurfaceSamples samples_N =
+        SamplePoissonDisk(part_N.solid_O, mapping.samples,
+                          DeriveSeed(request_.seed, {kSamplesN, uint64_t(p)}),
+                          part_N.num_surface_faces);
+    AlignmentOptions options;
+    options.scale = mapping.scale;
+    options.normal_weight = mapping.normal_weight;
+    pair.alignment = RefineAlignment(samples_E, samples_N,
+                                     CalcStart(*found, mapping.scale), options);
+    pair.map = std::make_unique<ContactMap>(
+        samples_E, samples_N, pair.alignment, pair.solid_E->index(),
+        pair.solid_N->index(), mapping);
+    alignment = {pair.alignment.X_NE, pair.alignment.scale,
+                 pair.alignment.residual, pair.map->CalcMappedShare()};
+  }
+
+  // The whole objects' alignment, which a body's handle has turned right; a
+  // rigid one keeps the part's centre where the similarity puts it.
+  SurfaceAlignment CalcStart(const Part& part_E, bool scale) const {
+    SurfaceAlignment start;
+    start.X_NE = request_.X_NE;
+    start.scale = request_.scale;
+    if (scale) return start;
+    const Eigen::Vector3d center_E = CalcMassProperties(part_E.solid_O).p_McCM;
+    const Eigen::Vector3d center_N = start * center_E;
+    start.scale = 1.0;
+    start.X_NE.translation = center_N - start.X_NE.rotation * center_E;
+    return start;
+  }
+
+  // One source grasp through all stages; touches its own record only.
+  void TransferOne(TransferRecord& record) const {
+    const uint64_t p = record.part;
+    const uint64_t s = record.source_grasp;
+    const PartPair& pair = pairs_[p];
+    const Grasp& source = request_.grasp_spaces[p]->grasps[s];
+    record.example_epsilon = source.quality.epsilon;
+    record.example_epsilon_whole =
+        CalcEpsilon(source.contacts, mass_E_, parameters_.contact);
+    if (!pair.map) return;
+
+    // Sec. V-A: where its contacts lie on the novel part.
+    const TransferTask task = MapGrasp(pair, source, record.targets_N);
+    std::vector<Eigen::Vector3d> normals;
+    for (const ContactTarget& target : task.targets) {
+      normals.push_back(target.nhat_N);
+    }
+    if (!HasOpposedPair(normals, parameters_.transfer.min_opposed_contacts)) {
+      return;
+    }
+    record.open_close_epsilon_part =
+        CalcOpenCloseEpsilon(hand_, task, *pair.solid_N, parameters_);
+    if (request_.assemble) {
+      record.open_close_epsilon_whole =
+          CalcOpenCloseEpsilon(hand_, task, *whole_N_, parameters_);
+    }
+
+    // Sec. V-B: a stable grasp of the part …
+    ReplanResult on_part =
+        Replan(hand_, task, task.X_NH, *pair.solid_N, parameters_,
+               DeriveSeed(request_.seed, {kReplan, p, s}));
+    record.transfer = on_part.outcome;
+    record.assembly = on_part.outcome;
+    if (!on_part.grasp) return;
+    record.transferred = Complete(std::move(*on_part.grasp), *pair.solid_N);
+
+    // … and Sec. V-C: of the whole object.
+    if (request_.assemble) {
+      ReplanResult on_whole =
+          Assemble(hand_, task, *record.transferred, *whole_N_, parameters_,
+                   DeriveSeed(request_.seed, {kAssemble, p, s}));
+      record.assembly = on_whole.outcome;
+      if (!on_whole.grasp) return;
+      record.assembled = Complete(std::move(*on_whole.grasp), *whole_N_);
+    }
+    const Grasp& last =
+        record.assembled ? *record.assembled : *record.transferred;
+    const Solid& solid = record.assembled ? *whole_N_ : *pair.solid_N;
+    record.robust = CalcRobustness(hand_, last, solid, parameters_,
+                                   DeriveSeed(request_.seed, {kRobust, p, s}));
+    record.penetration = CalcPenetration(hand_, last.configuration, solid);
+  }
+
+  TransferTask MapGrasp(
+      const PartPair& pair, const Grasp& source,
+      std::vector<std::optional<Eigen::Vector3d>>& targets_N) const {
+    TransferTask task;
+    const RigidTransform& X_EH = source.configuration.X_OH;
+    task.X_NH.rotation = pair.alignment.X_NE.rotation * X_EH.rotation;
+    task.X_NH.translation = pair.alignment * X_EH.translation;
+    task.q_pregrasp = source.q_pregrasp;
+    task.q = source.configuration.q;
+    const auto X_HL = CalcLinkPoses(hand_.model(), task.q);
+    for (const Contact& contact : source.contacts) {
+      targets_N.push_back(
+          pair.map->MapConsistently(contact.p_O, contact.nhat_O));
+      if (!targets_N.back()) continue;
+      const RigidTransform X_LE = (X_EH * X_HL[contact.link]).Inverse();
+      const ClosestPoint on_link =
+          *hand_.link(contact.link)->index.FindClosest(X_LE * contact.p_O);
+      const ClosestPoint on_N =
+          *pair.solid_N->index().FindClosest(*targets_N.back());
+      task.targets.push_back({contact.link, on_link.p_M, on_link.pseudonormal,
+                              *targets_N.back(), on_N.pseudonormal});
+    }
+    return task;
+  }
+
+  // Fills in what is not needed while searching.
+  Grasp Complete(Grasp grasp, const Solid& solid) const {
+    grasp.quality.hybrid = CalcHybrid(hand_, grasp, solid, parameters_);
+    grasp.quality.volume = CalcWrenchVolume(
+        CalcContactWrenches(grasp.contacts, solid.mass(), parameters_.contact));
+    return grasp;
+  }
+
+  const TransferRequest& request_;
+  const Parameters& parameters_;
+  ExecutionContext& context_;
+  const HandShape hand_;
+  MassProperties mass_E_;
+  std::vector<PartPair> pairs_;
+  std::unique_ptr<Solid> whole_N_;
+};
+
+}  // namespace
+
+Result<TransferResult> Transfer(const TransferRequest& request,
+                                ExecutionContext& context) {
+  GRASPDB_EXPECTS(request.grasp_spaces.size() == request.novel_parts.size());
+  return RunWithThreads(request.threads,
+                        [&] { return Transferrer(request, context).Run(); });
+}
+
+const char* EngineVersion() { return GRASPDB_VERSION; }
+
+}  // namespace graspdb

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/parameters.h"
+#include "engine/planning/grasp.h"
+
+namespace graspdb {
+
+/** How different two grasps are: |Δp| / position + angle / angle + max |Δq| /
+ joint, each over its parameter; at least 1 when they count as two. */
+double CalcGraspDifference(const Grasp& a, const Grasp& b,
+                           const DistinctParameters& parameters);
+
+/** The distinct grasps found so far. Of near-duplicates the one with the larger
+ ε stays. */
+class GraspArchive {
+ public:
+  explicit GraspArchive(const DistinctParameters& parameters)
+      : parameters_(parameters) {}
+
+  /** True when the grasp was kept. */
+  bool Insert(const Grasp& grasp);
+
+  int size() const { return static_cast<int>(grasps_.size()); }
+  /** In order of ε, the largest first. */
+  std::vector<Grasp> MakeSorted() const;
+
+ private:
+  DistinctParameters parameters_;
+  std::vector<Grasp> grasps_;
+};
+
+}  // namespace graspdb

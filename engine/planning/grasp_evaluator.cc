@@ -1,0 +1,155 @@
+#include "engine/planning/grasp_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/random.h"
+#include "engine/hand/finger_closing.h"
+#include "engine/hand/hand_sweep.h"
+#include "engine/quality/contact_extraction.h"
+#include "engine/quality/epsilon_quality.h"
+#include "engine/quality/hybrid_measure.h"
+#include "engine/quality/wrench_space.h"
+
+namespace graspdb {
+namespace {
+
+constexpr double kRobustShift = 0.003;              // m
+constexpr double kRobustTurn = 3.0 * M_PI / 180.0;  // rad
+constexpr double kRobustFriction = 0.2;
+constexpr double kApproachStep = 0.0005;       // m
+constexpr double kPenetrationSpacing = 0.001;  // m
+
+// Visits patches of at most the spacing that may lie inside the solid.
+void VisitInside(const SurfacePatch& patch, const RigidTransform& X_OL,
+                 const Solid& solid, double& deepest) {
+  const Eigen::Vector3d p_O = X_OL * patch.p_L;
+  if (solid.field().Calc(p_O) - solid.field().max_error() > patch.radius) {
+    return;
+  }
+  if (patch.radius > kPenetrationSpacing) {
+    for (const SurfacePatch& half : SplitPatch(patch)) {
+      VisitInside(half, X_OL, solid, deepest);
+    }
+    return;
+  }
+  deepest = std::min(deepest, solid.index().CalcSignedDistance(p_O));
+}
+
+}  // namespace
+
+double CalcEpsilon(const std::vector<Contact>& contacts,
+                   const MassProperties& mass,
+                   const ContactParameters& parameters) {
+  if (contacts.size() < 2) return -1.0;
+  return CalcEpsilonQuality(CalcContactWrenches(contacts, mass, parameters));
+}
+
+EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
+                             const Eigen::VectorXd& q_pregrasp,
+                             const Solid& solid, const Parameters& parameters) {
+  EvaluatedGrasp result;
+  Grasp& grasp = result.grasp;
+  grasp.configuration = {X_OH, q_pregrasp};
+  grasp.q_pregrasp = q_pregrasp;
+  grasp.approach_O = X_OH.rotation * hand.model().approach_H();
+  grasp.retreat = parameters.pregrasp.retreat;
+  grasp.quality.epsilon = -1.0;
+
+  const auto X_HL_open = CalcLinkPoses(hand.model(), q_pregrasp);
+  const int colliding = FindCollidingLink(hand, X_OH, X_HL_open, solid);
+  if (colliding >= 0) {
+    result.failure = colliding == 0 ? GraspFailure::kPalmCollision
+                                    : GraspFailure::kFingerCollision;
+    return result;
+  }
+  if (FindSelfCollision(hand, X_HL_open)) {
+    result.failure = GraspFailure::kFingerCollision;
+    return result;
+  }
+  grasp.configuration.q = CloseFingers(hand, X_OH, q_pregrasp, solid);
+  grasp.contacts = ExtractContacts(
+      hand, X_OH, CalcLinkPoses(hand.model(), grasp.configuration.q), solid,
+      parameters.contact);
+  if (grasp.contacts.size() < 2) {
+    result.failure = GraspFailure::kNoContact;
+    return result;
+  }
+  grasp.quality.epsilon =
+      CalcEpsilon(grasp.contacts, solid.mass(), parameters.contact);
+  if (grasp.quality.epsilon < parameters.contact.stable_epsilon) {
+    result.failure = GraspFailure::kUnstable;
+  }
+  return result;
+}
+
+double CalcHybrid(const HandShape& hand, const Grasp& grasp, const Solid& solid,
+                  const Parameters& parameters) {
+  const auto X_HL = CalcLinkPoses(hand.model(), grasp.configuration.q);
+  return CalcHybridGraspMeasure(
+      FindPointPairs(hand.model(), grasp.configuration.X_OH, X_HL, solid),
+      grasp.quality.epsilon, parameters.hybrid, parameters.contact.tolerance);
+}
+
+bool IsReachable(const HandShape& hand, const Grasp& grasp,
+                 const Solid& solid) {
+  HandConfiguration away{grasp.configuration.X_OH, grasp.q_pregrasp};
+  away.X_OH.translation -= grasp.retreat * grasp.approach_O;
+  const auto X_HL = CalcLinkPoses(hand.model(), away.q);
+  if (FindCollidingLink(hand, away.X_OH, X_HL, solid) >= 0) return false;
+  return FindFirstContact(hand, away,
+                          {grasp.configuration.X_OH, grasp.q_pregrasp}, solid,
+                          kApproachStep) == 1.0;
+}
+
+double CalcRobustness(const HandShape& hand, const Grasp& grasp,
+                      const Solid& solid, const Parameters& parameters,
+                      uint64_t seed, int copies) {
+  Random random(seed);
+  int stable = 0;
+  for (int i = 0; i < copies; ++i) {
+    RigidTransform X_OH = grasp.configuration.X_OH;
+    X_OH.translation += kRobustShift * random.NextInUnitBall();
+    X_OH.rotation = X_OH.rotation * random.NextRotationWithin(kRobustTurn);
+    Parameters perturbed = parameters;
+    perturbed.contact.friction *=
+        1.0 + random.NextUniform(-kRobustFriction, kRobustFriction);
+    stable +=
+        CloseAndJudge(hand, X_OH, grasp.q_pregrasp, solid, perturbed).ok();
+  }
+  return static_cast<double>(stable) / copies;
+}
+
+double CalcPenetration(const HandShape& hand,
+                       const HandConfiguration& configuration,
+                       const Solid& solid) {
+  const auto X_HL = CalcLinkPoses(hand.model(), configuration.q);
+  double deepest = 0.0;
+  for (int i = 0; i < hand.model().num_links(); ++i) {
+    if (!hand.link(i)) continue;
+    const RigidTransform X_OL = configuration.X_OH * X_HL[i];
+    for (const SurfacePatch& patch : hand.link(i)->tree.patches()) {
+      VisitInside(patch, X_OL, solid, deepest);
+    }
+    // The object's vertices within the link.
+    const RigidTransform X_LO = X_OL.Inverse();
+    const Eigen::Vector3d& center = hand.link(i)->tree.center();
+    const double radius = hand.link(i)->tree.radius();
+    for (const Eigen::Vector3d& p_O : solid.mesh_O().vertices()) {
+      const Eigen::Vector3d p_L = X_LO * p_O;
+      if ((p_L - center).squaredNorm() > radius * radius) continue;
+      for (const TriangleMesh& piece : hand.model().links()[i].pieces_L) {
+        // Inside a convex piece by how much: the nearest of its face planes.
+        double inside = -1.0;
+        for (int f = 0; f < piece.num_triangles(); ++f) {
+          inside =
+              std::max(inside, piece.normal(f).dot(p_L - piece.corner(f, 0)));
+        }
+        deepest = std::min(deepest, inside);
+      }
+    }
+  }
+  return -deepest;
+}
+
+}  // namespace graspdb

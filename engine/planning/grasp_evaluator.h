@@ -1,0 +1,66 @@
+#pragma once
+
+#include "engine/geometry/solid.h"
+#include "engine/hand/hand_shape.h"
+#include "engine/parameters.h"
+#include "engine/planning/grasp.h"
+
+namespace graspdb {
+
+/** Why a hand posture does not become a grasp. */
+enum class GraspFailure {
+  kNone,
+  kPalmCollision,    ///< The base link collides before closing.
+  kFingerCollision,  ///< A finger collides before closing.
+  kNoContact,        ///< Closing meets too little to hold anything.
+  kUnstable,         ///< Closed, but ε is below the limit.
+  kUnreachable,      ///< The way from the pre-grasp collides.
+};
+
+/** A posture after closing: the grasp as far as it was judged, and what is
+ wrong with it. */
+struct EvaluatedGrasp {
+  Grasp grasp;
+  GraspFailure failure{GraspFailure::kNone};
+
+  bool ok() const { return failure == GraspFailure::kNone; }
+};
+
+/** Closes the hand at X_OH from q_pregrasp on the solid, finds the contacts and
+ ε about the solid's mass centre. Approach and retreat are filled in, not
+ checked; hybrid and volume are left at zero. */
+EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
+                             const Eigen::VectorXd& q_pregrasp,
+                             const Solid& solid, const Parameters& parameters);
+
+/** The wrench-space quality of contacts on an object with these mass
+ properties; -1 for fewer than two contacts. */
+double CalcEpsilon(const std::vector<Contact>& contacts,
+                   const MassProperties& mass,
+                   const ContactParameters& parameters);
+
+/** Eq. (1) for a closed grasp on the solid. */
+double CalcHybrid(const HandShape& hand, const Grasp& grasp, const Solid& solid,
+                  const Parameters& parameters);
+
+/** True when the open hand can come from grasp.retreat away, straight along
+ grasp.approach_O, without touching the solid. */
+bool IsReachable(const HandShape& hand, const Grasp& grasp, const Solid& solid);
+
+/** Copies that a reported robustness is the share of. */
+inline constexpr int kRobustCopies = 32;
+
+/** The share of `copies` that stay stable, the hand moved uniformly within a
+ 3 mm ball and turned within 3 degrees, friction changed within ±20 %, fingers
+ closed again from the pre-grasp. */
+double CalcRobustness(const HandShape& hand, const Grasp& grasp,
+                      const Solid& solid, const Parameters& parameters,
+                      uint64_t seed, int copies = kRobustCopies);
+
+/** The deepest that a point of either surface lies inside the other solid, m,
+ surfaces sampled every millimetre near each other; 0 without overlap. */
+double CalcPenetration(const HandShape& hand,
+                       const HandConfiguration& configuration,
+                       const Solid& solid);
+
+}  // namespace graspdb

@@ -1,0 +1,293 @@
+#include "engine/planning/grasp_space_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include <tbb/parallel_for.h>
+
+#include "engine/base/contract.h"
+#include "engine/base/random.h"
+#include "engine/hand/hand_sweep.h"
+#include "engine/planning/grasp_archive.h"
+#include "engine/planning/grasp_evaluator.h"
+
+namespace graspdb {
+namespace {
+
+constexpr int kNiches = 26;
+// Particles pass through nothing thicker than this, metres.
+constexpr double kMoveStep = 0.001;
+
+// The 26 directions with coordinates -1, 0, 1; the nearest one's index.
+int FindNiche(const Eigen::Vector3d& direction) {
+  int best = 0, index = 0;
+  double best_cosine = -2.0;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const double cosine =
+            direction.dot(Eigen::Vector3d(x, y, z).normalized());
+        if (cosine > best_cosine) {
+          best_cosine = cosine;
+          best = index;
+        }
+        ++index;
+      }
+    }
+  }
+  return best;
+}
+
+// A step in the tangent space of postures: metres, radians, motors.
+struct Velocity {
+  Eigen::Vector3d shift{Eigen::Vector3d::Zero()};  // Of the hand origin, in O.
+  Eigen::Vector3d turn{Eigen::Vector3d::Zero()};   // In H.
+  Eigen::VectorXd motors;
+};
+
+Velocity CalcDifference(const HandPosture& to, const HandPosture& from) {
+  const Eigen::AngleAxisd turn(from.X_OH.rotation.transpose() *
+                               to.X_OH.rotation);
+  return {to.X_OH.translation - from.X_OH.translation,
+          turn.angle() * turn.axis(), to.actuators - from.actuators};
+}
+
+struct Particle {
+  HandPosture here;
+  Velocity velocity;
+  HandPosture best;
+  double best_measure{std::numeric_limits<double>::infinity()};
+  int niche{0};
+  int stale{0};                // Iterations without improvement.
+  std::optional<Grasp> found;  // In this iteration.
+};
+
+class Swarm {
+ public:
+  Swarm(const HandShape& hand, const Solid& part, const Solid* whole,
+        const ConfigurationSpace& space, const std::vector<HandPosture>& seeds,
+        const Parameters& parameters, uint64_t seed)
+      : hand_(hand),
+        part_(part),
+        whole_(whole),
+        obstacle_(whole != nullptr ? *whole : part),
+        space_(space),
+        seeds_(seeds),
+        parameters_(parameters),
+        swarm_(parameters.swarm),
+        seed_(seed),
+        constriction_(CalcConstriction(2.0 * swarm_.acceleration)),
+        archive_(parameters.distinct),
+        niche_best_(kNiches, -1),
+        particles_(swarm_.particles) {}
+
+  GraspSearchResult Run(ExecutionContext& context) {
+    int iteration = 0;
+    for (; iteration < swarm_.iterations && !context.Cancelled() &&
+           archive_.size() < swarm_.target_grasps;
+         ++iteration) {
+      // Everything of one particle depends on its own stream and on the bests
+      // of the iteration before, so threads change nothing.
+      tbb::parallel_for(0, swarm_.particles, [&](int i) {
+        Random random(DeriveSeed(seed_, {uint64_t(iteration), uint64_t(i)}));
+        Particle& particle = particles_[i];
+        if (iteration == 0 || particle.stale > swarm_.patience) {
+          Restart(particle, iteration, i, random);
+        } else {
+          Move(particle, random);
+        }
+        Judge(particle, random.NextBits());
+      });
+      for (Particle& particle : particles_) {
+        if (particle.found) archive_.Insert(*particle.found);
+      }
+      UpdateNicheBests();
+      context.ReportProgress(
+          "swarm",
+          std::max(
+              static_cast<double>(iteration + 1) / swarm_.iterations,
+              static_cast<double>(archive_.size()) / swarm_.target_grasps));
+    }
+    GraspSearchResult result;
+    result.grasps = archive_.MakeSorted();
+    result.configurations_tried = iteration * swarm_.particles;
+    std::set<int> niches;
+    for (const Grasp& grasp : result.grasps) {
+      niches.insert(FindNiche(grasp.approach_O));
+    }
+    result.coverage = static_cast<double>(niches.size()) / kNiches;
+    return result;
+  }
+
+ private:
+  // From the classifier's seeds first, then from aimed samples around the part.
+  void Restart(Particle& particle, int iteration, int index, Random& random) {
+    const size_t next =
+        static_cast<size_t>(iteration) * swarm_.particles + index;
+    const bool aimed = random.NextUniform() < swarm_.aimed_share;
+    if (!aimed && next < seeds_.size()) {
+      particle.here = seeds_[next];
+    } else if (!aimed && !seeds_.empty()) {
+      particle.here = space_.Perturb(
+          seeds_[random.NextIndex(static_cast<int>(seeds_.size()))],
+          swarm_.max_step, swarm_.max_turn, random);
+    } else {
+      particle.here = space_.SampleAimed(random);
+    }
+    constexpr int kTries = 100;
+    for (int i = 0; i < kTries && !IsFree(particle.here); ++i) {
+      particle.here = space_.SampleAimed(random);
+    }
+    particle.velocity.shift = swarm_.max_step * random.NextInUnitBall();
+    particle.velocity.turn = swarm_.max_turn * random.NextInUnitBall();
+    particle.velocity.motors =
+        Eigen::VectorXd::Zero(hand_.model().num_actuators());
+    particle.best_measure = std::numeric_limits<double>::infinity();
+    particle.best = particle.here;
+    particle.stale = 0;
+    particle.niche = swarm_.niches ? FindNiche(particle.here.X_OH.rotation *
+                                               hand_.model().approach_H())
+                                   : 0;
+  }
+
+  bool IsFree(const HandPosture& posture) const {
+    const auto X_HL = CalcLinkPoses(
+        hand_.model(), hand_.model().CalcCoupledJoints(posture.actuators));
+    return FindCollidingLink(hand_, posture.X_OH, X_HL, obstacle_) < 0 &&
+           !FindSelfCollision(hand_, X_HL);
+  }
+
+  // Clerc's update; the move ends at the first contact.
+  void Move(Particle& particle, Random& random) const {
+    const HandPosture& leader = niche_best_[particle.niche] >= 0
+                                    ? leaders_[niche_best_[particle.niche]]
+                                    : particle.best;
+    const Velocity own = CalcDifference(particle.best, particle.here);
+    const Velocity social = CalcDifference(leader, particle.here);
+    const double a = swarm_.acceleration * random.NextUniform();
+    const double b = swarm_.acceleration * random.NextUniform();
+    Velocity& v = particle.velocity;
+    v.shift = constriction_ * (v.shift + a * own.shift + b * social.shift);
+    v.turn = constriction_ * (v.turn + a * own.turn + b * social.turn);
+    v.motors = constriction_ * (v.motors + a * own.motors + b * social.motors);
+    v.shift *= std::min(1.0, swarm_.max_step / std::max(1e-12, v.shift.norm()));
+    v.turn *= std::min(1.0, swarm_.max_turn / std::max(1e-12, v.turn.norm()));
+
+    const HandModel& hand = hand_.model();
+    HandPosture next = particle.here;
+    next.X_OH.translation += v.shift;
+    if (v.turn.norm() > 0.0) {
+      next.X_OH.rotation = particle.here.X_OH.rotation *
+                           Eigen::AngleAxisd(v.turn.norm(), v.turn.normalized())
+                               .toRotationMatrix();
+    }
+    for (int i = 0; i < hand.num_actuators(); ++i) {
+      next.actuators[i] =
+          std::clamp(particle.here.actuators[i] + v.motors[i],
+                     hand.actuators()[i].lower, hand.actuators()[i].upper);
+    }
+    const HandConfiguration from{
+        particle.here.X_OH, hand.CalcCoupledJoints(particle.here.actuators)};
+    const HandConfiguration to{next.X_OH,
+                               hand.CalcCoupledJoints(next.actuators)};
+    const double t = FindFirstContact(hand_, from, to, obstacle_, kMoveStep);
+    if (t < 1.0) {
+      next.actuators = (1.0 - t) * particle.here.actuators + t * next.actuators;
+      next.X_OH = Interpolate(from, to, t).X_OH;
+      // What stopped the particle takes its momentum.
+      v.shift.setZero();
+      v.turn.setZero();
+      v.motors.setZero();
+    }
+    particle.here = next;
+  }
+
+  // Closes the fingers; remembers the place if it is the particle's best, and
+  // the grasp if it holds.
+  void Judge(Particle& particle, uint64_t seed) const {
+    particle.found.reset();
+    ++particle.stale;
+    const HandModel& hand = hand_.model();
+    const Eigen::VectorXd q = hand.CalcCoupledJoints(particle.here.actuators);
+    EvaluatedGrasp evaluated =
+        CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
+    if (evaluated.failure == GraspFailure::kPalmCollision ||
+        evaluated.failure == GraspFailure::kFingerCollision) {
+      return;
+    }
+    Grasp& grasp = evaluated.grasp;
+    grasp.quality.hybrid = CalcHybrid(hand_, grasp, part_, parameters_);
+    if (grasp.quality.hybrid < particle.best_measure) {
+      particle.best_measure = grasp.quality.hybrid;
+      particle.best = particle.here;
+      particle.stale = 0;
+    }
+    if (evaluated.ok() && HoldsOnWhole(grasp) &&
+        IsReachable(hand_, grasp, obstacle_) && IsRobust(grasp, seed)) {
+      particle.found = grasp;
+    }
+  }
+
+  bool HoldsOnWhole(const Grasp& grasp) const {
+    return whole_ == nullptr ||
+           CloseAndJudge(hand_, grasp.configuration.X_OH, grasp.q_pregrasp,
+                         *whole_, parameters_)
+               .ok();
+  }
+
+  bool IsRobust(const Grasp& grasp, uint64_t seed) const {
+    return swarm_.min_robustness == 0.0 ||
+           CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
+                          swarm_.robust_copies) >= swarm_.min_robustness;
+  }
+
+  void UpdateNicheBests() {
+    std::fill(niche_best_.begin(), niche_best_.end(), -1);
+    leaders_.resize(particles_.size());
+    for (int i = 0; i < static_cast<int>(particles_.size()); ++i) {
+      leaders_[i] = particles_[i].best;
+      int& best = niche_best_[particles_[i].niche];
+      if (best < 0 ||
+          particles_[i].best_measure < particles_[best].best_measure) {
+        best = i;
+      }
+    }
+  }
+
+  const HandShape& hand_;
+  const Solid& part_;
+  const Solid* whole_;
+  const Solid& obstacle_;  // What the hand must not run into.
+  const ConfigurationSpace& space_;
+  const std::vector<HandPosture>& seeds_;
+  const Parameters& parameters_;
+  const SwarmParameters& swarm_;
+  const uint64_t seed_;
+  const double constriction_;
+  GraspArchive archive_;
+  std::vector<int> niche_best_;  // Particle with the best measure, or -1.
+  std::vector<Particle> particles_;
+  std::vector<HandPosture> leaders_;  // Each particle's best so far.
+};
+
+}  // namespace
+
+double CalcConstriction(double phi) {
+  GRASPDB_EXPECTS(phi > 4.0);
+  return 2.0 / std::abs(2.0 - phi - std::sqrt(phi * phi - 4.0 * phi));
+}
+
+GraspSearchResult SearchGraspSpace(const HandShape& hand, const Solid& part,
+                                   const Solid* whole,
+                                   const ConfigurationSpace& space,
+                                   const std::vector<HandPosture>& seeds,
+                                   const Parameters& parameters, uint64_t seed,
+                                   ExecutionContext& context) {
+  return Swarm(hand, part, whole, space, seeds, parameters, seed).Run(context);
+}
+
+}  // namespace graspdb

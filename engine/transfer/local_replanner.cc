@@ -1,0 +1,305 @@
+#include "engine/transfer/local_replanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/base/random.h"
+#include "engine/planning/grasp_evaluator.h"
+#include "engine/transfer/replan_objective.h"
+
+namespace graspdb {
+namespace {
+
+// Assembly tries to draw the palm back this far, in these steps, metres.
+constexpr double kMaxRetreat = 0.010;
+constexpr double kRetreatStep = 0.0025;
+
+TransferOutcome ToOutcome(GraspFailure failure) {
+  switch (failure) {
+    case GraspFailure::kNone:
+      return TransferOutcome::kSucceeded;
+    case GraspFailure::kPalmCollision:
+      return TransferOutcome::kPalmCollision;
+    case GraspFailure::kFingerCollision:
+      return TransferOutcome::kFingerCollision;
+    case GraspFailure::kNoContact:
+      return TransferOutcome::kNoContact;
+    case GraspFailure::kUnstable:
+      return TransferOutcome::kUnstable;
+    case GraspFailure::kUnreachable:
+      return TransferOutcome::kUnreachable;
+  }
+  return TransferOutcome::kUnstable;
+}
+
+// Annealing of one grasp on one solid.
+class Replanner {
+ public:
+  Replanner(const HandShape& hand, const TransferTask& task, const Solid& solid,
+            const Parameters& parameters, uint64_t seed)
+      : hand_(hand),
+        task_(task),
+        solid_(solid),
+        parameters_(parameters),
+        replan_(parameters.replan),
+        random_(seed) {}
+
+  ReplanResult Run(const RigidTransform& start_X_NH) {
+    Sample here{start_X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
+    double here_value = Evaluate(here);
+    int since_gain = 0;
+    for (int i = 0; i < replan_.iterations && since_gain < replan_.patience;
+         ++i) {
+      const double cooling = static_cast<double>(i) / replan_.iterations;
+      const double epsilon_before = BestEpsilon();
+      const std::optional<Sample> next = DrawFree(here, 1.0 - 0.8 * cooling);
+      if (next) {
+        const double value = Evaluate(*next);
+        const double temperature =
+            replan_.initial_temperature *
+            std::pow(replan_.final_temperature / replan_.initial_temperature,
+                     cooling);
+        if (value < here_value ||
+            random_.NextUniform() <
+                std::exp((here_value - value) / temperature)) {
+          here = *next;
+          here_value = value;
+        }
+      }
+      // Patience counts once there is something to be content with.
+      since_gain =
+          best_ && BestEpsilon() == epsilon_before ? since_gain + 1 : 0;
+    }
+    if (!best_) return {furthest_, std::nullopt};
+    return {TransferOutcome::kSucceeded, std::move(best_)};
+  }
+
+ private:
+  struct Sample {
+    RigidTransform X_NH;
+    Eigen::VectorXd motors;  // Before closing.
+  };
+
+  double BestEpsilon() const { return best_ ? best_->quality.epsilon : 0.0; }
+
+  // Closes the fingers and keeps the grasp if it is the best that counts. The
+  // value of Eq. (6), or infinity in collision.
+  double Evaluate(const Sample& sample) {
+    const EvaluatedGrasp evaluated = CloseAndJudge(
+        hand_, sample.X_NH, hand_.model().CalcCoupledJoints(sample.motors),
+        solid_, parameters_);
+    Note(ToOutcome(evaluated.failure));
+    if (evaluated.failure == GraspFailure::kPalmCollision ||
+        evaluated.failure == GraspFailure::kFingerCollision) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const Grasp& grasp = evaluated.grasp;
+    if (evaluated.ok() && grasp.quality.epsilon > BestEpsilon()) {
+      if (!IsTransferOf(task_, grasp, parameters_.transfer)) {
+        Note(TransferOutcome::kTooFar);
+      } else if (!IsReachable(hand_, grasp, solid_)) {
+        Note(TransferOutcome::kUnreachable);
+      } else {
+        best_ = grasp;
+      }
+    }
+    return CalcReplanObjective(CalcGoals(grasp), grasp.configuration.q, task_.q,
+                               grasp.quality.epsilon,
+                               parameters_.hybrid.epsilon_floor, replan_);
+  }
+
+  // Where the source's contact points on the fingers are now.
+  std::vector<ContactGoal> CalcGoals(const Grasp& grasp) const {
+    const auto X_HL = CalcLinkPoses(hand_.model(), grasp.configuration.q);
+    std::vector<ContactGoal> goals;
+    for (const ContactTarget& target : task_.targets) {
+      const RigidTransform X_NL = grasp.configuration.X_OH * X_HL[target.link];
+      goals.push_back({X_NL * target.p_L, X_NL.rotation * target.nhat_L,
+                       target.p_N, target.nhat_N});
+    }
+    return goals;
+  }
+
+  // A free sample near `around`; when the first collides, the paper adds more.
+  std::optional<Sample> DrawFree(const Sample& around, double share) {
+    for (int i = 0; i <= replan_.extra_samples; ++i) {
+      Sample sample = Draw(around, share);
+      const auto X_HL = CalcLinkPoses(
+          hand_.model(), hand_.model().CalcCoupledJoints(sample.motors));
+      if (FindCollidingLink(hand_, sample.X_NH, X_HL, solid_) < 0) {
+        return sample;
+      }
+    }
+    return std::nullopt;
+  }
+
+  Sample Draw(const Sample& around, double share) {
+    const HandModel& hand = hand_.model();
+    Sample sample = around;
+    const Eigen::VectorXd example = hand.CalcActuators(task_.q_pregrasp);
+    for (int a = 0; a < hand.num_actuators(); ++a) {
+      const HandActuator& actuator = hand.actuators()[a];
+      const double low =
+          std::max(actuator.lower, example[a] - replan_.joint_range);
+      const double up =
+          std::min(actuator.upper, example[a] + replan_.joint_range);
+      sample.motors[a] =
+          std::clamp(around.motors[a] + share * replan_.joint_range *
+                                            random_.NextUniform(-1.0, 1.0),
+                     low, std::max(low, up));
+    }
+    if (replan_.move_wrist) {
+      sample.X_NH.translation +=
+          share * replan_.trust_translation * random_.NextInUnitBall();
+      sample.X_NH.rotation =
+          around.X_NH.rotation *
+          random_.NextRotationWithin(share * replan_.trust_rotation);
+      Confine(sample.X_NH);
+    }
+    return sample;
+  }
+
+  // Back to what may be called a transfer of the source grasp.
+  void Confine(RigidTransform& X_NH) const {
+    const Eigen::Vector3d shift = X_NH.translation - task_.X_NH.translation;
+    const double max_shift = 0.98 * parameters_.transfer.max_translation;
+    if (shift.norm() > max_shift) {
+      X_NH.translation =
+          task_.X_NH.translation + shift * (max_shift / shift.norm());
+    }
+    const Eigen::AngleAxisd turn(task_.X_NH.rotation.transpose() *
+                                 X_NH.rotation);
+    const double max_turn = 0.98 * parameters_.transfer.max_rotation;
+    if (turn.angle() > max_turn) {
+      X_NH.rotation =
+          task_.X_NH.rotation *
+          Eigen::AngleAxisd(max_turn, turn.axis()).toRotationMatrix();
+    }
+  }
+
+  // Of all that went wrong, what came nearest to success is the reason given.
+  void Note(TransferOutcome outcome) {
+    if (outcome != TransferOutcome::kSucceeded && outcome > furthest_) {
+      furthest_ = outcome;
+    }
+  }
+
+  const HandShape& hand_;
+  const TransferTask& task_;
+  const Solid& solid_;
+  const Parameters& parameters_;
+  const ReplanParameters& replan_;
+  Random random_;
+  std::optional<Grasp> best_;
+  TransferOutcome furthest_{TransferOutcome::kPalmCollision};
+};
+
+}  // namespace
+
+const char* ToString(TransferOutcome outcome) {
+  switch (outcome) {
+    case TransferOutcome::kSucceeded:
+      return "succeeded";
+    case TransferOutcome::kNoCorrespondence:
+      return "no_correspondence";
+    case TransferOutcome::kPalmCollision:
+      return "palm_collision";
+    case TransferOutcome::kFingerCollision:
+      return "finger_collision";
+    case TransferOutcome::kNoContact:
+      return "no_contact";
+    case TransferOutcome::kUnstable:
+      return "unstable";
+    case TransferOutcome::kTooFar:
+      return "too_far";
+    case TransferOutcome::kUnreachable:
+      return "unreachable";
+  }
+  return "unknown";
+}
+
+bool HasOpposedPair(const std::vector<Eigen::Vector3d>& normals, int least) {
+  // Each that opposes another one counts.
+  int opposed = 0;
+  for (const Eigen::Vector3d& a : normals) {
+    opposed +=
+        std::any_of(normals.begin(), normals.end(),
+                    [&a](const Eigen::Vector3d& b) { return a.dot(b) < 0.0; });
+  }
+  return opposed >= least;
+}
+
+bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
+                  const TransferLimits& limits) {
+  const RigidTransform& X_NH = grasp.configuration.X_OH;
+  if ((X_NH.translation - task.X_NH.translation).norm() >
+          limits.max_translation ||
+      CalcRotationAngle(X_NH.rotation.transpose() * task.X_NH.rotation) >
+          limits.max_rotation) {
+    return false;
+  }
+  std::vector<Eigen::Vector3d> reached;
+  for (const ContactTarget& target : task.targets) {
+    const bool near = std::any_of(
+        grasp.contacts.begin(), grasp.contacts.end(), [&](const Contact& c) {
+          return c.link == target.link &&
+                 (c.p_O - target.p_N).norm() <= limits.max_target_distance;
+        });
+    if (near) reached.push_back(target.nhat_N);
+  }
+  return HasOpposedPair(reached, limits.min_opposed_contacts);
+}
+
+ReplanResult Replan(const HandShape& hand, const TransferTask& task,
+                    const RigidTransform& start_X_NH, const Solid& solid,
+                    const Parameters& parameters, uint64_t seed) {
+  return Replanner(hand, task, solid, parameters, seed).Run(start_X_NH);
+}
+
+ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
+                      const Grasp& transferred, const Solid& whole,
+                      const Parameters& parameters, uint64_t seed) {
+  RigidTransform start = transferred.configuration.X_OH;
+  const auto X_HL = CalcLinkPoses(hand.model(), transferred.q_pregrasp);
+  const auto palm_collides = [&](const RigidTransform& X_NH) {
+    return hand.link(0) && LinkCollides(*hand.link(0), X_NH * X_HL[0], whole);
+  };
+  for (double retreat = kRetreatStep;
+       retreat <= kMaxRetreat && palm_collides(start);
+       retreat += kRetreatStep) {
+    start.translation = transferred.configuration.X_OH.translation -
+                        retreat * transferred.approach_O;
+  }
+  if (palm_collides(start)) {
+    return {TransferOutcome::kPalmCollision, std::nullopt};
+  }
+  TransferTask on_whole = task;
+  on_whole.q_pregrasp = transferred.q_pregrasp;
+  return Replan(hand, on_whole, start, whole, parameters, seed);
+}
+
+double CalcOpenCloseEpsilon(const HandShape& hand, const TransferTask& task,
+                            const Solid& solid, const Parameters& parameters) {
+  const HandModel& model = hand.model();
+  Eigen::VectorXd motors = model.CalcActuators(task.q_pregrasp);
+  // Straighten each finger that collides.
+  const auto X_HL = CalcLinkPoses(model, model.CalcCoupledJoints(motors));
+  for (int a = 0; a < model.num_actuators(); ++a) {
+    if (!model.actuators()[a].closes) continue;
+    for (size_t k = 0; k < model.actuators()[a].joints.size(); ++k) {
+      for (const int link : hand.chain_links(a, static_cast<int>(k))) {
+        if (hand.link(link) &&
+            LinkCollides(*hand.link(link), task.X_NH * X_HL[link], solid)) {
+          motors[a] = model.actuators()[a].lower;
+        }
+      }
+    }
+  }
+  const EvaluatedGrasp grasp = CloseAndJudge(
+      hand, task.X_NH, model.CalcCoupledJoints(motors), solid, parameters);
+  return grasp.ok() ? grasp.grasp.quality.epsilon : 0.0;
+}
+
+}  // namespace graspdb

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/geometry/solid.h"
+#include "engine/hand/hand_shape.h"
+#include "engine/parameters.h"
+#include "engine/planning/grasp.h"
+#include "engine/transfer/transfer_outcome.h"
+
+namespace graspdb {
+
+/** A contact of the source grasp and its image on the novel object. */
+struct ContactTarget {
+  int link{0};
+  Eigen::Vector3d p_L;     ///< Where the source grasp's link touched, frame L.
+  Eigen::Vector3d nhat_L;  ///< Out of the link there.
+  Eigen::Vector3d p_N;     ///< d_i on the novel object, m.
+  Eigen::Vector3d nhat_N;  ///< Out of the novel object there.
+};
+
+/** One source grasp, carried over to the novel object. */
+struct TransferTask {
+  RigidTransform X_NH;         ///< T* X_EH: what the grasp must stay near.
+  Eigen::VectorXd q_pregrasp;  ///< The source grasp's open joints.
+  Eigen::VectorXd q;           ///< The source grasp's closed joints.
+  std::vector<ContactTarget> targets;  ///< Contacts that could be mapped.
+};
+
+struct ReplanResult {
+  TransferOutcome outcome{TransferOutcome::kNoContact};
+  std::optional<Grasp> grasp;  ///< Set when the outcome is kSucceeded.
+};
+
+/** True when two targets oppose each other: their normals differ by more than a
+ right angle. */
+bool HasOpposedPair(const std::vector<Eigen::Vector3d>& normals, int least);
+
+/** What section 8 asks of a transferred grasp beyond stability: the hand near
+ T* X_EH, and opposed contacts near their targets. */
+bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
+                  const TransferLimits& limits);
+
+/** Local replanning: simulated annealing on Eq. (6) around `start_X_NH`. Each
+ sample that collides is replaced by up to extra_samples others; each free one
+ closes its fingers, and the stable, reachable, near-enough grasp with the
+ largest ε is the answer. Deterministic for a seed. @paper{Sec. V-B}
+ @param start_X_NH  Where to start; may differ from task.X_NH. */
+ReplanResult Replan(const HandShape& hand, const TransferTask& task,
+                    const RigidTransform& start_X_NH, const Solid& solid,
+                    const Parameters& parameters, uint64_t seed);
+
+/** Assembly: the grasp of the part on the whole object. When the palm collides,
+ small retreats are tried; the annealing then works on the whole object.
+ @paper{Sec. V-C} */
+ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
+                      const Grasp& transferred, const Solid& whole,
+                      const Parameters& parameters, uint64_t seed);
+
+/** The open-close baseline: at T* X_EH the colliding fingers are straightened,
+ then all close; no replanning. ε, or 0 when it is not stable.
+ @paper{Sec. VI-C, baseline} [Krug et al. 2014] */
+double CalcOpenCloseEpsilon(const HandShape& hand, const TransferTask& task,
+                            const Solid& solid, const Parameters& parameters);
+
+}  // namespace graspdb

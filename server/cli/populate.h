@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/cli/progress.h"
+#include "server/jobs/service.h"
+
+namespace graspdb {
+
+struct PopulateOrder {
+  std::string
+      folder;  ///< With hands/<name>/hand.json, <category>/category.json.
+  std::vector<std::string> hands;  ///< To learn with; empty: all.
+  Parameters parameters;
+  uint64_t seed{1};
+  bool learn{true};
+};
+
+/** Brings a data folder into the database: hands, categories, examples, and
+ what is learned from them. What is known is left as it is, so that it can be
+ run again at any time. Novel objects of the folder are for users to POST.
+ @returns the JSON of all grasp spaces of the folder's examples, as a list.
+ @retval kInvalidArgument naming the file at fault. */
+Result<std::string> Populate(Service& service, const PopulateOrder& order,
+                             Progress& progress);
+
+/** A file's bytes; "-" reads standard input.
+ @retval kInvalidArgument when it cannot be read. */
+Result<std::string> ReadFileBytes(const std::string& path);
+
+}  // namespace graspdb

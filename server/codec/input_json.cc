@@ -1,0 +1,457 @@
+#include "server/codec/input_json.h"
+
+#include <algorithm>
+#include <climits>
+
+#include "server/codec/json.h"
+#include "server/codec/parameters_json.h"
+
+namespace graspdb {
+namespace {
+
+constexpr JsonLimits kFileLimits{64 << 20, 64};
+
+Error Invalid(const std::string& message, const std::string& field) {
+  return Error{ErrorCode::kInvalidArgument, message, "", field};
+}
+
+// ---- Categories -------------------------------------------------------------
+
+void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
+  const Json* json = fields.Find("parts");
+  if (json == nullptr) return;
+  if (!json->is_array()) return fields.Fail("parts", "a list of parts");
+  parts.clear();
+  for (size_t i = 0; i < json->size(); ++i) {
+    const std::string path = "parts[" + std::to_string(i) + "]";
+    JsonFields entry((*json)[i], path);
+    CategoryPart part;
+    entry.RequireText("label", part.label);
+    if (const Json* tasks = entry.Find("tasks")) {
+      JsonFields notes(*tasks, path + ".tasks");
+      if (tasks->is_object()) {
+        for (const auto& [task, note] : tasks->items()) {
+          notes.Read(task, part.tasks[task]);
+        }
+      }
+      if (const auto read = notes.Finish(); !read) entry.Fail(read.error());
+    }
+    if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
+    parts.push_back(std::move(part));
+  }
+}
+
+// Pairs of labels become pairs of label indices.
+void ReadTopology(JsonFields& fields, StoredCategory& category) {
+  const Json* json = fields.Find("topology");
+  if (json == nullptr) return;
+  const char* takes = "a list of pairs of the category's labels";
+  if (!json->is_array()) return fields.Fail("topology", takes);
+  category.adjacency.clear();
+  const auto index_of = [&](const Json& label) {
+    for (size_t i = 0; i < category.parts.size(); ++i) {
+      if (label == category.parts[i].label) return static_cast<int>(i);
+    }
+    return -1;
+  };
+  for (const Json& pair : *json) {
+    if (!pair.is_array() || pair.size() != 2) {
+      return fields.Fail("topology", takes);
+    }
+    const int a = index_of(pair[0]);
+    const int b = index_of(pair[1]);
+    if (a < 0 || b < 0 || a == b) return fields.Fail("topology", takes);
+    category.adjacency.emplace_back(a, b);
+  }
+}
+
+void ReadCategoryFields(JsonFields& fields, StoredCategory& category) {
+  fields.Read("title", category.title);
+  ReadParts(fields, category.parts);
+  ReadTopology(fields, category);
+  if (const Json* settings = fields.Find("segmentation")) {
+    auto read =
+        SegmentationFromJson(DumpJson(*settings), category.segmentation);
+    if (read) {
+      category.segmentation = *read;
+    } else {
+      fields.Fail(read.error());
+    }
+  }
+}
+
+std::vector<CategoryExample> ReadExamples(JsonFields& fields,
+                                          const std::string& name) {
+  std::vector<CategoryExample> examples;
+  const Json* json = fields.Find(name);
+  if (json == nullptr) return examples;
+  if (!json->is_array()) {
+    fields.Fail(name, "a list of meshes");
+    return examples;
+  }
+  for (size_t i = 0; i < json->size(); ++i) {
+    JsonFields entry((*json)[i], name + "[" + std::to_string(i) + "]");
+    CategoryExample example;
+    entry.RequireText("name", example.name);
+    entry.RequireText("mesh", example.mesh);
+    entry.Read("labels", example.labels);
+    if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
+    examples.push_back(std::move(example));
+  }
+  return examples;
+}
+
+// ---- Labels -----------------------------------------------------------------
+
+// {"body": [[0, 10]], ...}: half-open ranges that together cover all faces.
+Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
+  struct Range {
+    int begin;
+    int end;
+    std::string label;
+  };
+  const std::string takes =
+      "faces must map each label to half-open ranges [begin, end).";
+  if (!faces.is_object()) return Invalid(takes, "faces");
+  std::vector<Range> ranges;
+  for (const auto& [label, list] : faces.items()) {
+    if (!list.is_array()) return Invalid(takes, "faces." + label);
+    for (const Json& range : list) {
+      const bool sound = range.is_array() && range.size() == 2 &&
+                         range[0].is_number_unsigned() &&
+                         range[1].is_number_unsigned() &&
+                         range[1].get<uint64_t>() <= 10'000'000 &&
+                         range[0].get<uint64_t>() < range[1].get<uint64_t>();
+      if (!sound) return Invalid(takes, "faces." + label);
+      ranges.push_back({range[0].get<int>(), range[1].get<int>(), label});
+    }
+  }
+  std::sort(ranges.begin(), ranges.end(),
+            [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  std::vector<std::string> labels;
+  for (const Range& range : ranges) {
+    if (range.begin != static_cast<int>(labels.size())) {
+      return Invalid("The ranges of faces overlap or leave out face " +
+                         std::to_string(labels.size()) + ".",
+                     "faces." + range.label);
+    }
+    labels.resize(static_cast<size_t>(range.end), range.label);
+  }
+  return labels;
+}
+
+// Reads labels given either way; none when neither is there.
+std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
+  std::vector<std::string> labels;
+  fields.Read("face_labels", labels);
+  if (const Json* faces = fields.Find("faces")) {
+    auto expanded = ExpandRanges(*faces);
+    if (expanded) {
+      labels = std::move(*expanded);
+    } else {
+      fields.Fail(expanded.error());
+    }
+  }
+  return labels;
+}
+
+// ---- Hands ------------------------------------------------------------------
+
+// Calls read(JsonFields& entry) for each entry of a list of objects.
+template <class F>
+void ReadEntries(JsonFields& fields, const std::string& name, F&& read) {
+  const Json* json = fields.Find(name);
+  if (json == nullptr) return;
+  if (!json->is_array()) return fields.Fail(name, "a list");
+  for (size_t i = 0; i < json->size(); ++i) {
+    JsonFields entry((*json)[i], name + "[" + std::to_string(i) + "]");
+    read(entry);
+    if (const auto done = entry.Finish(); !done) fields.Fail(done.error());
+  }
+}
+
+void ReadIgnoredCollisions(JsonFields& fields, HandAnnotations& annotations) {
+  const Json* json = fields.Find("ignored_collisions");
+  if (json == nullptr) return;
+  const char* takes = "a list of pairs of links";
+  if (!json->is_array()) return fields.Fail("ignored_collisions", takes);
+  for (const Json& pair : *json) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string() ||
+        !pair[1].is_string()) {
+      return fields.Fail("ignored_collisions", takes);
+    }
+    annotations.ignored_collisions.emplace_back(pair[0], pair[1]);
+  }
+}
+
+void ReadAnnotations(JsonFields& fields, HandAnnotations& annotations) {
+  fields.RequireText("name", annotations.name);
+  fields.Read("approach_axis_H", annotations.approach_H);
+  const double norm = annotations.approach_H.norm();
+  if (!(std::abs(norm - 1.0) < 1e-6)) {
+    fields.Fail("approach_axis_H", "a unit vector");
+  }
+  fields.Read("closing_force_n", annotations.closing_force);
+  if (!(annotations.closing_force > 0.0)) {
+    fields.Fail("closing_force_n", "more than 0 N");
+  }
+  ReadEntries(fields, "actuators", [&](JsonFields& entry) {
+    HandAnnotations::Actuator& actuator = annotations.actuators.emplace_back();
+    entry.RequireText("name", actuator.name);
+    entry.RequireText("joint", actuator.joint);
+    entry.Read("closes", actuator.closes);
+  });
+  ReadEntries(fields, "breakaway", [&](JsonFields& entry) {
+    HandAnnotations::Breakaway& breakaway =
+        annotations.breakaway.emplace_back();
+    entry.RequireText("joint", breakaway.joint);
+    entry.RequireText("released_joint", breakaway.released_joint);
+    entry.Read("ratio", breakaway.ratio);
+  });
+  ReadEntries(fields, "contact_points", [&](JsonFields& entry) {
+    HandAnnotations::ContactPoint& point =
+        annotations.contact_points.emplace_back();
+    entry.RequireText("link", point.link);
+    entry.Require("p_L");
+    entry.Read("p_L", point.p_L);
+    entry.Require("nhat_L");
+    entry.Read("nhat_L", point.nhat_L);
+    point.nhat_L.normalize();
+  });
+  ReadIgnoredCollisions(fields, annotations);
+}
+
+// ---- Orders -----------------------------------------------------------------
+
+void ReadParameters(JsonFields& fields, Parameters& parameters) {
+  const Json* json = fields.Find("parameters");
+  if (json == nullptr) return;
+  auto read = ParametersFromJson(DumpJson(*json), parameters);
+  if (read) {
+    parameters = *read;
+  } else {
+    Error error = read.error();
+    error.field = fields.PathOf("parameters") + "." + error.field;
+    fields.Fail(error);
+  }
+}
+
+Json Encode(const ImportOrder& order) {
+  Json json;
+  json["file_name"] = order.file_name;
+  json["format"] = order.format;
+  json["units"] = order.units;
+  json["role"] = ToString(order.role);
+  json["category"] = order.category;
+  json["name"] = order.name;
+  json["face_labels"] = order.face_labels;
+  json["seed"] = order.seed;
+  json["learn"] = order.learn;
+  return json;
+}
+
+ImportOrder ReadImportOrder(JsonFields& fields) {
+  ImportOrder order;
+  std::string role = ToString(order.role);
+  fields.Read("file_name", order.file_name);
+  fields.Read("format", order.format);
+  fields.Read("units", order.units);
+  fields.Read("role", role);
+  fields.Read("category", order.category);
+  fields.Read("name", order.name);
+  fields.Read("face_labels", order.face_labels);
+  fields.ReadSeed("seed", order.seed);
+  fields.Read("learn", order.learn);
+  const auto parsed = ParseObjectRole(role);
+  if (parsed) {
+    order.role = *parsed;
+  } else {
+    fields.Fail(parsed.error());
+  }
+  return order;
+}
+
+LearnOrder ReadLearnOrder(JsonFields& fields) {
+  LearnOrder order;
+  fields.Read("parts", order.part_labels);
+  fields.Read("hands", order.hands);
+  ReadParameters(fields, order.parameters);
+  fields.ReadSeed("seed", order.seed);
+  return order;
+}
+
+}  // namespace
+
+Result<StoredCategory> CategoryFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  StoredCategory category;
+  fields.RequireText("name", category.name);
+  fields.Require("parts");
+  ReadCategoryFields(fields, category);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return category;
+}
+
+Result<StoredCategory> PatchCategory(const StoredCategory& category,
+                                     const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  StoredCategory patched = category;
+  ReadCategoryFields(fields, patched);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return patched;
+}
+
+Result<CategoryFile> CategoryFileFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  CategoryFile file;
+  fields.RequireText("name", file.category.name);
+  fields.Require("parts");
+  ReadCategoryFields(fields, file.category);
+  file.examples = ReadExamples(fields, "examples");
+  file.novel = ReadExamples(fields, "novel");
+  GRASPDB_TRY_VOID(fields.Finish());
+  return file;
+}
+
+Result<std::vector<std::string>> FaceLabelsFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  std::vector<std::string> vocabulary;
+  fields.Read("labels", vocabulary);
+  const std::vector<std::string> labels = ReadFaceLabels(fields);
+  GRASPDB_TRY_VOID(fields.Finish());
+  if (labels.empty()) return Invalid("There are no face labels.", "faces");
+  return labels;
+}
+
+Result<HandFile> HandFileFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  HandFile file;
+  fields.Read("title", file.title);
+  fields.RequireText("urdf", file.urdf);
+  std::string ignored;  // For people.
+  fields.Read("licence", ignored);
+  fields.Read("source", ignored);
+  ReadAnnotations(fields, file.annotations);
+  GRASPDB_TRY_VOID(fields.Finish());
+  if (file.title.empty()) file.title = file.annotations.name;
+  return file;
+}
+
+Result<std::string> PartLabelFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  std::string label;
+  fields.RequireText("label", label);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return label;
+}
+
+Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  SegmentOrder order;
+  fields.Read("category", order.category);
+  fields.ReadSeed("seed", order.seed);
+  order.face_labels = ReadFaceLabels(fields);
+  if (const Json* settings = fields.Find("settings")) {
+    order.settings = DumpJson(*settings);
+    const auto read =
+        SegmentationFromJson(order.settings, SegmentationParameters());
+    if (!read) fields.Fail(read.error());
+  }
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+Result<LearnOrder> LearnOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  LearnOrder order = ReadLearnOrder(fields);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+std::string ToJson(const ImportOrder& order) { return DumpJson(Encode(order)); }
+
+std::string ToJson(const LearnOrder& order) {
+  Json json;
+  json["object"] = order.object_id;
+  json["parts"] = order.part_labels;
+  json["hands"] = order.hands;
+  json["parameters"] = Json::parse(ParametersToJson(order.parameters));
+  json["seed"] = order.seed;
+  return DumpJson(json);
+}
+
+std::string ToJson(const TransferOrder& order) {
+  Json json;
+  json["mesh"] = Encode(order.mesh);
+  json["object"] = order.object_id;
+  json["category"] = order.category;
+  json["parts"] = order.part_labels;
+  json["task"] = order.task;
+  json["hand"] = order.hand;
+  json["count"] = order.count ? Json(*order.count) : Json(nullptr);
+  json["sources"] = order.sources;
+  json["stage"] = ToString(order.stage);
+  json["parameters"] = Json::parse(ParametersToJson(order.parameters));
+  json["seed"] = order.seed;
+  return DumpJson(json);
+}
+
+Result<ImportOrder> StoredImportOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  ImportOrder order = ReadImportOrder(fields);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  std::string object_id;
+  fields.RequireText("object", object_id);
+  LearnOrder order = ReadLearnOrder(fields);
+  order.object_id = object_id;
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  TransferOrder order;
+  if (const Json* mesh = fields.Find("mesh")) {
+    JsonFields inner(*mesh, "mesh");
+    order.mesh = ReadImportOrder(inner);
+    if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
+  }
+  std::string stage = ToString(order.stage);
+  fields.Read("object", order.object_id);
+  fields.Read("category", order.category);
+  fields.Read("parts", order.part_labels);
+  fields.Read("task", order.task);
+  fields.Read("hand", order.hand);
+  if (const Json* count = fields.Find("count");
+      count != nullptr && !count->is_null()) {
+    int number = 0;
+    fields.ReadInteger("count", number, 1, INT_MAX);
+    order.count = number;
+  }
+  fields.ReadInteger("sources", order.sources, 1, INT_MAX);
+  fields.Read("stage", stage);
+  ReadParameters(fields, order.parameters);
+  fields.ReadSeed("seed", order.seed);
+  GRASPDB_TRY_VOID(fields.Finish());
+  GRASPDB_TRY(parsed, ParseGraspStage(stage));
+  order.stage = parsed;
+  return order;
+}
+
+}  // namespace graspdb

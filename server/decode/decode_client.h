@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/geometry/triangle_mesh.h"
+#include "server/decode/decode_protocol.h"
+
+namespace graspdb {
+
+struct DecoderOptions {
+  /** The helper program; empty: graspdb-decode beside the running program. */
+  std::string helper;
+  double deadline{10.0};                   ///< Of one mesh, wall clock, s.
+  int64_t memory_bytes{int64_t{1} << 30};  ///< Of one helper.
+  /** Decode even where the kernel cannot confine the helper. */
+  bool allow_unsandboxed{false};
+};
+
+/** A mesh file, admitted: frame O is the frame of the file. */
+struct DecodedMesh {
+  TriangleMesh mesh_O;               ///< Closed, repaired, full resolution.
+  TriangleMesh work_O;               ///< Decimated for the search, or the same.
+  std::vector<std::string> repairs;  ///< One sentence per step; often empty.
+  MassProperties mass;               ///< Of mesh_O.
+  std::string format;                ///< "OBJ", "STL" or "PLY".
+};
+
+/** Admits mesh files without ever touching their bytes: a confined helper
+ program decodes, repairs and decimates one mesh and dies. Thread-safe. */
+class Decoder {
+ public:
+  explicit Decoder(DecoderOptions options = {});
+
+  /** @param bytes  A mesh file, hostile or not.
+   @retval kUnusableInput when the bytes are no mesh, no solid can be made, the
+     size cannot be that of a graspable object, or the helper crashed, ran out
+     of memory or missed the deadline on them.
+   @retval kTooLarge over one of request.limits.
+   @retval kInternal when the helper cannot be started or confined.
+   @pre metres_per_unit is positive and finite, work_triangles >= 4. */
+  Result<DecodedMesh> Decode(std::span<const uint8_t> bytes,
+                             const DecodeRequest& request) const;
+
+  /** Decodes a small solid: for a server to call before it starts to serve.
+   @returns how the helper is confined: "landlock and seccomp", "seccomp" (the
+     kernel has no landlock) or "none" (only if allowed).
+   @retval kInternal as Decode(). */
+  Result<std::string> Check() const;
+
+ private:
+  DecoderOptions options_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,119 @@
+// graspdb-decode: reads one request and a mesh file's bytes from standard input
+// inside a sandbox, writes one answer to standard output. The server starts one
+// per mesh; see decode_client.h.
+
+#include <cerrno>
+#include <csignal>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <sys/prctl.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include "engine/geometry/graspable_size.h"
+#include "engine/geometry/mesh_reader.h"
+#include "engine/geometry/mesh_repair.h"
+#include "server/decode/decode_protocol.h"
+#include "server/decode/sandbox.h"
+
+namespace graspdb {
+namespace {
+
+std::vector<uint8_t> ReadStandardInput() {
+  std::vector<uint8_t> bytes;
+  std::size_t size = 0;
+  while (true) {
+    if (bytes.size() - size < (1 << 16)) bytes.resize(2 * size + (1 << 18));
+    const ssize_t got =
+        read(STDIN_FILENO, bytes.data() + size, bytes.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+bool WriteStandardOutput(std::span<const uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+  return true;
+}
+
+Result<DecodeAnswer> Admit(const DecodeRequest& request,
+                           std::span<const uint8_t> bytes) {
+  MeshFormat format{};
+  if (request.format) {
+    format = *request.format;
+  } else {
+    GRASPDB_TRY(guess, GuessMeshFormat(bytes, request.file_name));
+    format = guess;
+  }
+  GRASPDB_TRY(soup_O,
+              ReadMesh(bytes, format, request.metres_per_unit, request.limits));
+  GRASPDB_TRY_VOID(CheckGraspableSize(soup_O, request.metres_per_unit));
+  GRASPDB_TRY(repaired, RepairMesh(soup_O));
+  GRASPDB_TRY(work_O, Decimate(repaired.mesh, request.work_triangles));
+  return DecodeAnswer{std::move(repaired.mesh), std::move(work_O),
+                      std::move(repaired.repairs), GetName(format), ""};
+}
+
+Result<DecodeAnswer> AnswerRequest(const std::string& confinement) try {
+  const std::vector<uint8_t> bytes = ReadStandardInput();
+  std::span<const uint8_t> mesh;
+  const auto request = ParseRequest(bytes, &mesh);
+  if (!request) {
+    return Error{ErrorCode::kInternal,
+                 "graspdb-decode got no request on its standard input",
+                 "The server starts this program by itself."};
+  }
+  GRASPDB_TRY(answer, Admit(*request, mesh));
+  answer.confinement = confinement;
+  return std::move(answer);
+} catch (const std::bad_alloc&) {
+  return Error{ErrorCode::kUnusableInput,
+               "the mesh needs more memory than its decoding may use",
+               "Decimate or repair the mesh first.", "mesh"};
+} catch (const std::exception&) {
+  return Error{ErrorCode::kUnusableInput, "the decoder failed on the mesh",
+               "Check the mesh in a mesh editor.", "mesh"};
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{"Decodes one mesh in a sandbox; graspdb starts it by itself."};
+  SandboxLimits limits;
+  bool allow_unsandboxed = false;
+  bool probe = false;
+  app.add_option("--memory", limits.memory_bytes, "Most bytes of memory");
+  app.add_option("--cpu", limits.cpu_seconds, "Most seconds of computing");
+  app.add_flag("--allow-unsandboxed", allow_unsandboxed,
+               "Decode even where the kernel offers no sandbox");
+  app.add_flag("--probe", probe,
+               "Try ten forbidden system calls inside the sandbox");
+  CLI11_PARSE(app, argc, argv);
+
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  auto confinement = EnterSandbox(limits);
+  if (probe && confinement) return ProbeSandbox() == 0 ? 0 : 1;
+  if (!confinement && !allow_unsandboxed) {
+    WriteStandardOutput(EncodeAnswer(confinement.error()));
+    return 1;
+  }
+  const auto answer = AnswerRequest(confinement ? *confinement : "none");
+  return WriteStandardOutput(EncodeAnswer(answer)) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace graspdb
+
+int main(int argc, char** argv) {
+  // Without the destructors of libraries: nothing is left to do for them.
+  _exit(graspdb::Run(argc, argv));
+}

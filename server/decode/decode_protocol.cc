@@ -1,0 +1,201 @@
+#include "server/decode/decode_protocol.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace graspdb {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr uint32_t kRequestMark = 0x31524447;  // "GDR1"
+constexpr uint32_t kAnswerMark = 0x31414447;   // "GDA1"
+constexpr uint8_t kNoFormat = 255;
+
+class Writer {
+ public:
+  template <typename T>
+  void Write(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    const auto* begin = reinterpret_cast<const uint8_t*>(&value);
+    bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
+  }
+  void WriteText(const std::string& text) {
+    Write<uint64_t>(text.size());
+    bytes_.insert(bytes_.end(), text.begin(), text.end());
+  }
+  void WriteMesh(const TriangleMesh& mesh) {
+    Write<uint64_t>(mesh.vertices().size());
+    for (const Eigen::Vector3d& p : mesh.vertices()) {
+      for (const double x : p) Write(x);
+    }
+    Write<uint64_t>(mesh.triangles().size());
+    for (const Eigen::Vector3i& t : mesh.triangles()) {
+      for (const int v : t) Write(v);
+    }
+  }
+  std::vector<uint8_t> TakeBytes() { return std::move(bytes_); }
+
+ private:
+  std::vector<uint8_t> bytes_;
+};
+
+// After the first failure everything reads as empty and ok() is false.
+class Reader {
+ public:
+  explicit Reader(std::span<const uint8_t> bytes) : rest_(bytes) {}
+
+  bool ok() const { return ok_; }
+  std::span<const uint8_t> rest() const { return rest_; }
+  bool ReadEverything() const { return ok_ && rest_.empty(); }
+  void Require(bool condition) { ok_ = ok_ && condition; }
+
+  template <typename T>
+  T Read() {
+    static_assert(std::is_arithmetic_v<T>);
+    T value{};
+    Require(rest_.size() >= sizeof(T));
+    if (!ok_) return value;
+    std::memcpy(&value, rest_.data(), sizeof(T));
+    rest_ = rest_.subspan(sizeof(T));
+    return value;
+  }
+
+  // A count of things that take so many bytes each at least.
+  std::size_t ReadCount(std::size_t size) {
+    const auto count = Read<uint64_t>();
+    Require(count <= rest_.size() / size);
+    return ok_ ? count : 0;
+  }
+
+  // Anything but printable ASCII becomes a question mark.
+  std::string ReadText() {
+    std::string text(ReadCount(1), '\0');
+    for (char& c : text) {
+      const auto byte = Read<uint8_t>();
+      c = byte >= 0x20 && byte < 0x7f ? static_cast<char>(byte) : '?';
+    }
+    return text;
+  }
+
+  TriangleMesh ReadMesh() {
+    std::vector<Eigen::Vector3d> vertices(ReadCount(3 * sizeof(double)));
+    for (Eigen::Vector3d& p : vertices) {
+      for (double& x : p) {
+        x = Read<double>();
+        Require(std::isfinite(x));
+      }
+    }
+    std::vector<Eigen::Vector3i> triangles(ReadCount(3 * sizeof(int)));
+    for (Eigen::Vector3i& t : triangles) {
+      for (int& v : t) {
+        v = Read<int>();
+        Require(v >= 0 && static_cast<std::size_t>(v) < vertices.size());
+      }
+    }
+    if (!ok_) return {};
+    TriangleMesh mesh(std::move(vertices), std::move(triangles));
+    Require(IsClosed(mesh));
+    return mesh;
+  }
+
+ private:
+  std::span<const uint8_t> rest_;
+  bool ok_{true};
+};
+
+bool MayDecoderSay(ErrorCode code) {
+  return code == ErrorCode::kInvalidArgument ||
+         code == ErrorCode::kUnusableInput || code == ErrorCode::kTooLarge ||
+         code == ErrorCode::kInternal;
+}
+
+}  // namespace
+
+std::vector<uint8_t> EncodeRequest(const DecodeRequest& request) {
+  Writer writer;
+  writer.Write(kRequestMark);
+  writer.Write(request.format ? static_cast<uint8_t>(*request.format)
+                              : kNoFormat);
+  writer.WriteText(request.file_name);
+  writer.Write(request.metres_per_unit);
+  writer.Write(request.limits.max_bytes);
+  writer.Write(request.limits.max_triangles);
+  writer.Write(request.work_triangles);
+  return writer.TakeBytes();
+}
+
+std::optional<DecodeRequest> ParseRequest(std::span<const uint8_t> bytes,
+                                          std::span<const uint8_t>* mesh) {
+  Reader reader(bytes);
+  DecodeRequest request;
+  reader.Require(reader.Read<uint32_t>() == kRequestMark);
+  const auto format = reader.Read<uint8_t>();
+  if (format != kNoFormat) {
+    reader.Require(format <= static_cast<uint8_t>(MeshFormat::kPly));
+    request.format = static_cast<MeshFormat>(format);
+  }
+  request.file_name = reader.ReadText();
+  request.metres_per_unit = reader.Read<double>();
+  reader.Require(std::isfinite(request.metres_per_unit) &&
+                 request.metres_per_unit > 0.0);
+  request.limits.max_bytes = reader.Read<int64_t>();
+  request.limits.max_triangles = reader.Read<int64_t>();
+  request.work_triangles = reader.Read<int>();
+  reader.Require(request.work_triangles >= 4);
+  if (!reader.ok()) return std::nullopt;
+  *mesh = reader.rest();
+  return request;
+}
+
+std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
+  Writer writer;
+  writer.Write(kAnswerMark);
+  writer.Write<uint8_t>(answer.has_value());
+  if (!answer) {
+    writer.Write(static_cast<uint8_t>(answer.error().code));
+    writer.WriteText(answer.error().message);
+    writer.WriteText(answer.error().hint);
+    writer.WriteText(answer.error().field);
+    return writer.TakeBytes();
+  }
+  writer.WriteMesh(answer->mesh_O);
+  writer.WriteMesh(answer->work_O);
+  writer.Write<uint64_t>(answer->repairs.size());
+  for (const std::string& repair : answer->repairs) writer.WriteText(repair);
+  writer.WriteText(answer->format);
+  writer.WriteText(answer->confinement);
+  return writer.TakeBytes();
+}
+
+std::optional<Result<DecodeAnswer>> ParseAnswer(
+    std::span<const uint8_t> bytes) {
+  Reader reader(bytes);
+  reader.Require(reader.Read<uint32_t>() == kAnswerMark);
+  const auto has_value = reader.Read<uint8_t>();
+  reader.Require(has_value <= 1);
+  if (reader.ok() && has_value == 0) {
+    Error error;
+    error.code = static_cast<ErrorCode>(reader.Read<uint8_t>());
+    reader.Require(MayDecoderSay(error.code));
+    error.message = reader.ReadText();
+    error.hint = reader.ReadText();
+    error.field = reader.ReadText();
+    if (!reader.ReadEverything()) return std::nullopt;
+    return error;
+  }
+  DecodeAnswer answer;
+  answer.mesh_O = reader.ReadMesh();
+  answer.work_O = reader.ReadMesh();
+  answer.repairs.resize(reader.ReadCount(sizeof(uint64_t)));
+  for (std::string& repair : answer.repairs) repair = reader.ReadText();
+  answer.format = reader.ReadText();
+  answer.confinement = reader.ReadText();
+  if (!reader.ReadEverything()) return std::nullopt;
+  return answer;
+}
+
+}  // namespace graspdb

@@ -1,0 +1,458 @@
+#include "server/http/http_server.h"
+
+#include <fcntl.h>
+#include <httplib.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <random>
+#include <stop_token>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "server/http/connection.h"
+#include "server/http/multipart.h"
+#include "server/http/problem.h"
+#include "server/http/target.h"
+
+namespace graspdb {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/** One request on its way through the server. */
+struct Exchange {
+  Connection* connection{nullptr};
+  MessageHead head;
+  std::optional<HeadFault> fault;  ///< Instead of the head.
+  std::string id;
+  Clock::time_point begin{Clock::now()};
+  int status{0};
+  size_t bytes_in{0};
+  size_t bytes_out{0};
+  bool close{false};  ///< The connection ends after this exchange.
+};
+
+/** The exchange of this thread: the library hands its handlers nothing of
+ ours. */
+thread_local Exchange* current_exchange = nullptr;
+
+/** Lets the library read a checked, minimal head and then the body. */
+class LibraryStream final : public httplib::Stream {
+ public:
+  LibraryStream(std::string head, Connection& connection)
+      : head_(std::move(head)), connection_(connection) {}
+
+  using httplib::Stream::write;
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return true; }
+  ssize_t read(char* bytes, size_t size) override {
+    if (position_ == head_.size()) return connection_.ReadBody(bytes, size);
+    const size_t count = head_.copy(bytes, size, position_);
+    position_ += count;
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* bytes, size_t size) override {
+    return connection_.Write({bytes, size}) ? static_cast<ssize_t>(size) : -1;
+  }
+  void get_remote_ip_and_port(std::string&, int&) const override {}
+  void get_local_ip_and_port(std::string&, int&) const override {}
+  /** The library only compares it with the greatest that select() takes; we
+   poll(). */
+  socket_t socket() const override { return 0; }
+
+ private:
+  std::string head_;
+  size_t position_{0};
+  Connection& connection_;
+};
+
+/** What the library gets to see of a request: how to frame it, no more. Ranges,
+ codings, forms and the like never reach it. */
+std::string MakeLibraryHead(const MessageHead& head) {
+  if (head.chunked) {
+    return "POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n";
+  }
+  if (head.content_length > 0) {
+    return fmt::format("POST / HTTP/1.1\r\nContent-Length: {}\r\n\r\n",
+                       head.content_length);
+  }
+  return head.method == "HEAD" ? "HEAD / HTTP/1.1\r\n\r\n"
+                               : "GET / HTTP/1.1\r\n\r\n";
+}
+
+bool IsUsableRequestId(const std::string& id) {
+  return !id.empty() && id.size() <= 64 &&
+         id.find_first_not_of(
+             "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
+             "qrstuvwxyz0123456789-_.") == std::string::npos;
+}
+
+std::string MakeRequestId() {
+  static const uint32_t run = std::random_device()();
+  static std::atomic<uint32_t> count{0};
+  return fmt::format("{:08x}-{:08x}", run, ++count);
+}
+
+/** Text for a log line: printable ASCII without quotes, not too long. */
+std::string ForLog(std::string_view text) {
+  constexpr size_t kMost = 200;
+  std::string out;
+  for (const char c : text.substr(0, kMost)) {
+    out += c >= 0x20 && c < 0x7F && c != '"' ? c : '?';
+  }
+  return out;
+}
+
+std::string MakeTimestamp() {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(
+      std::chrono::system_clock::now());
+  const auto milliseconds = now.time_since_epoch().count() % 1000;
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
+                     milliseconds);
+}
+
+double CalcMilliseconds(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin)
+      .count();
+}
+
+}  // namespace
+
+struct HttpServer::Impl : httplib::Server {
+  Impl(Router router_in, HttpServerOptions options_in)
+      : router(std::move(router_in)), options(std::move(options_in)) {}
+  ~Impl() override { close(stop_fd); }
+
+  // The library's one virtual step per connection.
+  bool process_and_close_socket(socket_t socket) override;
+
+  Result<int> Bind(const std::string& on_host, int on_port);
+  void RequestStop();
+  void ServeExchange(Connection& connection, Exchange& exchange);
+  void Answer(const httplib::ContentReader* reader, httplib::Response& out);
+  HttpResponse Route(Exchange& exchange, const httplib::ContentReader* reader);
+  HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
+                      HttpRequest& request,
+                      const httplib::ContentReader* reader);
+  std::optional<HttpResponse> ReadBody(Exchange& exchange, BodyKind kind,
+                                       HttpRequest& request,
+                                       const httplib::ContentReader* reader);
+  std::optional<HttpResponse> ReadForm(HttpRequest& request) const;
+  void Log(const std::string& line) const {
+    if (options.log) options.log(line);
+  }
+
+  Router router;
+  HttpServerOptions options;
+  std::string host;
+  int port{0};
+  std::stop_source stop;
+  const int stop_fd{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+};
+
+Result<int> HttpServer::Impl::Bind(const std::string& on_host, int on_port) {
+  errno = 0;
+  const bool any = on_port == 0;
+  const int bound = any                              ? bind_to_any_port(on_host)
+                    : bind_to_port(on_host, on_port) ? on_port
+                                                     : -1;
+  if (bound > 0) {
+    ::listen(svr_sock_, 512);  // The library's backlog of 5 drops bursts.
+    host = on_host;
+    port = bound;
+    return bound;
+  }
+  const std::string why =
+      errno == 0 ? "the host is unknown" : std::strerror(errno);
+  return Error{
+      ErrorCode::kConflict,
+      fmt::format("Cannot listen on {}:{}: {}.", on_host, on_port, why),
+      "Stop the program that uses the port, or choose another with "
+      "--port (0: any free one)."};
+}
+
+void HttpServer::Impl::RequestStop() {
+  stop.request_stop();
+  eventfd_write(stop_fd, 1);
+  // Ends accept(), now or when it is called, unlike the library's own stop().
+  shutdown(svr_sock_, SHUT_RDWR);
+}
+
+bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
+  fcntl(socket, F_SETFD, FD_CLOEXEC);
+  Connection connection(socket, stop_fd, options.limits);
+  for (size_t count = 1;; ++count) {
+    auto head = connection.ReadHead();
+    if (std::holds_alternative<Connection::Closed>(head)) break;
+    Exchange exchange;
+    exchange.connection = &connection;
+    if (const auto* fault = std::get_if<HeadFault>(&head)) {
+      exchange.fault = *fault;
+      exchange.close = true;
+    } else {
+      exchange.head = std::get<MessageHead>(std::move(head));
+      const auto& fields = exchange.head.fields;
+      const auto wish = fields.find("connection");
+      exchange.close = stop.stop_requested() || exchange.head.http_1_0 ||
+                       exchange.head.chunked ||
+                       count == options.limits.max_requests_per_connection ||
+                       (wish != fields.end() && wish->second == "close");
+    }
+    ServeExchange(connection, exchange);
+    if (exchange.close) {
+      connection.Linger();
+      break;
+    }
+  }
+  shutdown(socket, SHUT_RDWR);
+  close(socket);
+  return true;
+}
+
+void HttpServer::Impl::ServeExchange(Connection& connection,
+                                     Exchange& exchange) {
+  const auto found = exchange.head.fields.find("x-request-id");
+  exchange.id =
+      found != exchange.head.fields.end() && IsUsableRequestId(found->second)
+          ? found->second
+          : MakeRequestId();
+  current_exchange = &exchange;
+  LibraryStream stream(MakeLibraryHead(exchange.head), connection);
+  bool closed = false;
+  const bool sent = process_request(stream, false, closed, nullptr);
+  current_exchange = nullptr;
+  if (!sent || !connection.AtMessageEnd()) exchange.close = true;
+  Log(fmt::format(
+      "time={} level=info event=request id={} method={} "
+      "target=\"{}\" status={} in={} out={} ms={:.1f}{}",
+      MakeTimestamp(), exchange.id, ForLog(exchange.head.method),
+      ForLog(exchange.head.target), exchange.status, exchange.bytes_in,
+      exchange.bytes_out, CalcMilliseconds(exchange.begin),
+      sent ? "" : " unsent=true"));
+}
+
+void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
+                              httplib::Response& out) {
+  Exchange& exchange = *current_exchange;
+  HttpResponse response = Route(exchange, reader);
+  std::string timing;
+  for (const auto& [stage, milliseconds] : response.timings) {
+    timing += fmt::format("{};dur={:.1f}, ", stage, milliseconds);
+  }
+  timing += fmt::format("total;dur={:.1f}", CalcMilliseconds(exchange.begin));
+  out.status = response.status;
+  out.set_header("Server-Timing", timing);
+  out.set_header("X-Request-Id", exchange.id);
+  out.set_header("X-Content-Type-Options", "nosniff");
+  for (const auto& [name, value] : response.headers) {
+    out.set_header(name, value);
+  }
+  exchange.status = response.status;
+  exchange.bytes_out = response.body.size();
+  if (response.status != 204) {
+    out.set_header("Content-Type", response.content_type);
+    out.body = std::move(response.body);
+  }
+  if (!exchange.connection->AtMessageEnd()) exchange.close = true;
+}
+
+HttpResponse HttpServer::Impl::Route(Exchange& exchange,
+                                     const httplib::ContentReader* reader) {
+  if (exchange.fault) {
+    return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
+                       exchange.id);
+  }
+  const auto target = ParseTarget(exchange.head.target);
+  if (!target) {
+    return MakeProblem(HttpFault::kMalformedRequest, target.error().message,
+                       target.error().hint, exchange.id);
+  }
+  HttpRequest request;
+  request.id = exchange.id;
+  request.method =
+      exchange.head.method == "HEAD" ? "GET" : exchange.head.method;
+  for (const auto& segment : target->segments) request.path += "/" + segment;
+  if (request.path.empty()) request.path = "/";
+  RouteMatch match = router.Find(request.method, target->segments);
+  if (match.route == nullptr && match.allowed.empty()) {
+    return MakeProblem(
+        {ErrorCode::kNotFound,
+         fmt::format("There is nothing at {}.", request.path.substr(0, 200)),
+         "GET /openapi.json lists every path."},
+        exchange.id);
+  }
+  if (match.route == nullptr) {
+    const std::string allowed =
+        fmt::format("{}", fmt::join(match.allowed, ", "));
+    HttpResponse response = MakeProblem(
+        HttpFault::kMethodNotAllowed,
+        fmt::format("{} takes {}.", request.path.substr(0, 200), allowed), "",
+        exchange.id);
+    response.headers.emplace_back("Allow", allowed);
+    return response;
+  }
+  request.path_parameters = std::move(match.path_parameters);
+  request.query = target->query;
+  request.headers = exchange.head.fields;
+  request.stop = stop.get_token();
+  return Handle(exchange, *match.route, request, reader);
+}
+
+HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
+                                      const graspdb::Route& route,
+                                      HttpRequest& request,
+                                      const httplib::ContentReader* reader) {
+  std::string cause = "unknown exception";
+  try {
+    if (auto refusal = ReadBody(exchange, route.body, request, reader)) {
+      return std::move(*refusal);
+    }
+    auto response = route.handler(request);
+    if (response) return std::move(*response);
+    if (response.error().code != ErrorCode::kInternal) {
+      return MakeProblem(response.error(), request.id);
+    }
+    cause = response.error().message;
+  } catch (const std::exception& exception) {
+    cause = exception.what();
+  } catch (...) {
+  }
+  Log(fmt::format("time={} level=error event=internal id={} cause=\"{}\"",
+                  MakeTimestamp(), request.id, ForLog(cause)));
+  return MakeProblem(Error{ErrorCode::kInternal, "", ""}, request.id);
+}
+
+std::optional<HttpResponse> HttpServer::Impl::ReadBody(
+    Exchange& exchange, BodyKind kind, HttpRequest& request,
+    const httplib::ContentReader* reader) {
+  const MessageHead& head = exchange.head;
+  if (!head.HasBody()) return std::nullopt;
+  if (kind == BodyKind::kNone) {
+    return MakeProblem(HttpFault::kMalformedRequest,
+                       "This operation takes no body.", "", request.id);
+  }
+  const std::string_view coding = request.FindHeader("content-encoding");
+  if (!coding.empty() && coding != "identity") {
+    return MakeProblem(HttpFault::kUnsupportedMediaType,
+                       "A body is read without content coding only.",
+                       "Send the bytes uncompressed.", request.id);
+  }
+  const std::string type(request.FindHeader("content-type"));
+  const std::string essence = type.substr(0, type.find_first_of("; \t"));
+  if (kind == BodyKind::kJson && !essence.empty() &&
+      essence != "application/json") {
+    return MakeProblem(HttpFault::kUnsupportedMediaType,
+                       "This operation reads application/json.",
+                       "Send the header Content-Type: application/json.",
+                       request.id);
+  }
+  const size_t limit =
+      kind == BodyKind::kJson
+          ? options.limits.max_json_bytes
+          : static_cast<size_t>(options.limits.max_upload_bytes);
+  bool too_large = head.content_length > limit;
+  const bool complete = !too_large && reader != nullptr &&
+                        (*reader)([&](const char* bytes, size_t size) {
+                          too_large = request.body.size() + size > limit;
+                          if (!too_large) request.body.append(bytes, size);
+                          return !too_large;
+                        });
+  exchange.bytes_in = request.body.size();
+  if (too_large) {
+    return MakeProblem({ErrorCode::kTooLarge,
+                        fmt::format("A body has at most {} bytes here.", limit),
+                        "Send a smaller file, or ask the operator to raise "
+                        "the limit."},
+                       request.id);
+  }
+  if (!complete) {
+    return exchange.connection->timed_out()
+               ? MakeProblem(HttpFault::kRequestTimeout,
+                             "The body did not arrive in time.", "", request.id)
+               : MakeProblem(HttpFault::kMalformedRequest,
+                             "The body ended early or its chunks are broken.",
+                             "", request.id);
+  }
+  const bool form = essence == "multipart/form-data";
+  return kind == BodyKind::kUpload && form ? ReadForm(request) : std::nullopt;
+}
+
+std::optional<HttpResponse> HttpServer::Impl::ReadForm(
+    HttpRequest& request) const {
+  auto parts = ParseMultipart(request.body, request.FindHeader("content-type"),
+                              options.limits);
+  if (!parts) return MakeProblem(parts.error(), request.id);
+  request.body.clear();
+  for (FormPart& part : *parts) {
+    if (!part.filename.empty()) {
+      request.files.push_back(std::move(part));
+    } else if (IsUtf8(part.content)) {
+      request.query.emplace_back(std::move(part.name), std::move(part.content));
+    } else {
+      return MakeProblem(
+          {ErrorCode::kInvalidArgument, "A form field is not UTF-8 text.",
+           "Send the mesh as a file: -F mesh=@FILE.", part.name},
+          request.id);
+    }
+  }
+  return std::nullopt;
+}
+
+HttpServer::HttpServer(Router router, HttpServerOptions options)
+    : impl_(std::make_unique<Impl>(std::move(router), std::move(options))) {
+  Impl& server = *impl_;
+  Impl* const impl = impl_.get();
+  server.set_tcp_nodelay(true);
+  // Not the library's default, which lets two servers share a port.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
+  server.new_task_queue = [threads = server.options.threads] {
+    return new httplib::ThreadPool(threads);
+  };
+  server.Get("/", [impl](const httplib::Request&, httplib::Response& out) {
+    impl->Answer(nullptr, out);
+  });
+  server.Post("/", [impl](const httplib::Request&, httplib::Response& out,
+                          const httplib::ContentReader& reader) {
+    impl->Answer(&reader, out);
+  });
+  server.set_post_routing_handler(
+      [](const httplib::Request&, httplib::Response& out) {
+        out.headers.erase("Keep-Alive");
+        out.headers.erase("Accept-Ranges");
+        if (current_exchange->close) out.set_header("Connection", "close");
+      });
+}
+
+HttpServer::~HttpServer() = default;
+
+Result<int> HttpServer::Bind(const std::string& host, int port) {
+  return impl_->Bind(host, port);
+}
+
+Result<void> HttpServer::Serve() {
+  Impl& server = *impl_;
+  while (!server.stop.stop_requested()) {
+    server.listen_after_bind();
+    if (server.stop.stop_requested()) break;
+    // The library gives up when accept() fails once, say for want of memory.
+    server.Log(
+        fmt::format("time={} level=error event=listen_again", MakeTimestamp()));
+    GRASPDB_TRY_VOID(server.Bind(server.host, server.port));
+  }
+  return {};
+}
+
+void HttpServer::Stop() { impl_->RequestStop(); }
+
+}  // namespace graspdb

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace graspdb {
+
+/** What a client may send and how slowly. */
+struct HttpLimits {
+  size_t max_head_bytes{32 * 1024};  ///< Request line and header fields.
+  size_t max_request_line_bytes{8000};
+  size_t max_field_bytes{8000};  ///< One header field.
+  size_t max_fields{100};
+  size_t max_json_bytes{4 << 20};      ///< Body of a JSON operation.
+  int64_t max_upload_bytes{64 << 20};  ///< A file, or a whole form.
+  size_t max_form_parts{32};
+  size_t max_form_field_bytes{4096};     ///< A form part without a file.
+  std::chrono::seconds idle_timeout{5};  ///< Between two requests.
+  std::chrono::seconds head_timeout{10};
+  std::chrono::seconds body_timeout{120};
+  std::chrono::seconds write_timeout{30};  ///< Without a byte getting away.
+  size_t max_requests_per_connection{100'000};
+};
+
+}  // namespace graspdb

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace graspdb {
+
+/** SHA-256 as 64 hex digits. */
+std::string CalcSha256(std::string_view bytes);
+
+/** The id of something that follows from its content: the first 32 hex digits
+ of SHA-256. Join what goes in with a separator that no piece contains. */
+std::string MakeContentId(std::string_view content);
+
+/** A new UUID version 7 (RFC 9562): ordered by time of creation, also within
+ one process and millisecond. */
+std::string MakeUuid();
+
+/** Now, as RFC 3339 UTC with milliseconds: "2024-05-01T12:00:00.000Z". */
+std::string FormatNow();
+
+}  // namespace graspdb

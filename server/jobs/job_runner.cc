@@ -1,0 +1,221 @@
+#include "server/jobs/job_runner.h"
+
+#include <cstdio>
+#include <exception>
+
+#include "server/codec/input_json.h"
+#include "server/jobs/service.h"
+#include "server/jobs/sub_context.h"
+
+namespace graspdb {
+namespace {
+
+// Below this share a rate says nothing of what is left.
+constexpr double kLeastProgressForEta = 0.02;
+// Of the progress of importing and learning an example.
+constexpr double kImportShare = 0.05;
+
+}  // namespace
+
+JobRunner::JobRunner(Service& service) : service_(service) {}
+JobRunner::~JobRunner() { Stop(); }
+
+Result<void> JobRunner::Start() {
+  GRASPDB_EXPECTS(workers_.empty());
+  const auto requeued = service_.store().RequeueRunningJobs();
+  if (!requeued) return requeued.error();
+  stopping_ = false;
+  for (const std::vector<JobKind>& kinds :
+       {std::vector{JobKind::kTransfer},
+        std::vector{JobKind::kImport, JobKind::kLearn}}) {
+    workers_.emplace_back([this, kinds] { Work(kinds); });
+  }
+  return {};
+}
+
+void JobRunner::Stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (auto& [id, live] : live_) live.context->Cancel();
+  }
+  Notify();
+  if (workers_.empty()) return;
+  for (std::thread& worker : workers_) worker.join();
+  workers_.clear();
+  // What was interrupted starts again with the next server.
+  if (const auto requeued = service_.store().RequeueRunningJobs(); !requeued) {
+    std::fprintf(stderr, "graspdb: %s\n", requeued.error().message.c_str());
+  }
+}
+
+void JobRunner::Wake() { Notify(); }
+
+void JobRunner::Notify() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++changes_;
+  }
+  changed_.notify_all();
+}
+
+Result<StoredJob> JobRunner::Find(const std::string& id) const {
+  GRASPDB_TRY(job, service_.store().FindJob(id));
+  AddLiveState(job);
+  return job;
+}
+
+void JobRunner::AddLiveState(StoredJob& job) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = live_.find(job.id);
+  if (found == live_.end() || job.state != JobState::kRunning) return;
+  const LiveJob& live = found->second;
+  job.stage = live.stage;
+  job.progress = live.progress;
+  if (live.progress < kLeastProgressForEta) return;
+  const std::chrono::duration<double> elapsed = Clock::now() - live.started;
+  job.eta_seconds = elapsed.count() * (1.0 - live.progress) / live.progress;
+}
+
+Result<StoredJob> JobRunner::Cancel(const std::string& id) {
+  GRASPDB_TRY(job, Find(id));
+  if (job.state == JobState::kRunning) {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = live_.find(id); found != live_.end()) {
+      found->second.cancelled_by_user = true;
+      found->second.context->Cancel();
+      return job;
+    }
+  }
+  if (job.Finished()) return job;
+  job.state = JobState::kCancelled;
+  GRASPDB_TRY(cancelled, service_.store().FinishJob(job));
+  Notify();
+  return cancelled;
+}
+
+void JobRunner::Work(const std::vector<JobKind>& kinds) {
+  while (true) {
+    uint64_t seen = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      seen = changes_;
+    }
+    auto claimed = service_.store().ClaimJob(kinds);
+    if (claimed && *claimed) {
+      Run(**claimed);
+      continue;
+    }
+    if (!claimed) {
+      std::fprintf(stderr, "graspdb: %s\n", claimed.error().message.c_str());
+    }
+    // Once in a while without a call, for when the store has failed.
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(2),
+                      [&] { return stopping_ || changes_ != seen; });
+  }
+}
+
+void JobRunner::Run(StoredJob job) {
+  const std::string id = job.id;
+  const auto context = std::make_shared<ExecutionContext>(
+      [this, id](const std::string& stage, double share) {
+        {
+          const std::lock_guard lock(mutex_);
+          live_[id].stage = stage;
+          live_[id].progress = share;
+        }
+        Notify();
+      });
+  {
+    const std::lock_guard lock(mutex_);
+    live_[id] = {"", 0.0, Clock::now(), context, false};
+    if (stopping_) context->Cancel();
+  }
+  Notify();
+  const Result<std::string> result = Execute(job, *context);
+  bool cancelled_by_user = false;
+  bool interrupted = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const LiveJob& live = live_[id];
+    job.stage = live.stage;
+    job.progress = live.progress;
+    cancelled_by_user = live.cancelled_by_user;
+    interrupted = stopping_;
+  }
+  const bool cancelled =
+      !result && result.error().code == ErrorCode::kCancelled;
+  if (result) {
+    job.state = JobState::kSucceeded;
+    job.progress = 1.0;
+    job.result_id = *result;
+  } else if (cancelled && cancelled_by_user) {
+    job.state = JobState::kCancelled;
+  } else {
+    job.state = JobState::kFailed;
+    job.error = result.error();
+  }
+  // A job that the end of the server interrupted stays as it is, to be queued.
+  if (!(cancelled && interrupted && !cancelled_by_user)) {
+    if (const auto done = service_.store().FinishJob(job); !done) {
+      std::fprintf(stderr, "graspdb: job %s: %s\n", id.c_str(),
+                   done.error().message.c_str());
+    }
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    live_.erase(id);
+  }
+  Notify();
+}
+
+Result<std::string> JobRunner::Execute(const StoredJob& job,
+                                       ExecutionContext& context) {
+  try {
+    GRASPDB_TRY(payload, service_.store().ReadJobPayload(job.id));
+    switch (job.kind) {
+      case JobKind::kImport:
+        return ExecuteImport(job, payload, context);
+      case JobKind::kLearn: {
+        GRASPDB_TRY(order, StoredLearnOrderFromJson(job.request));
+        const auto spaces = service_.LearnObject(order, context);
+        if (!spaces) return spaces.error();
+        return order.object_id;
+      }
+      case JobKind::kTransfer: {
+        GRASPDB_TRY(order, StoredTransferOrderFromJson(job.request));
+        order.mesh.bytes = std::move(payload);
+        GRASPDB_TRY(answer, service_.TransferGrasps(order, context));
+        return answer.transfer.id;
+      }
+    }
+  } catch (const std::exception& exception) {
+    std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),
+                 exception.what());
+    return Error{ErrorCode::kInternal, exception.what()};
+  }
+  return Error{ErrorCode::kInternal, "The job is of no known kind."};
+}
+
+Result<std::string> JobRunner::ExecuteImport(const StoredJob& job,
+                                             const std::string& payload,
+                                             ExecutionContext& context) {
+  GRASPDB_TRY(order, StoredImportOrderFromJson(job.request));
+  order.bytes = payload;
+  const bool learn = order.role == ObjectRole::kExample && order.learn;
+  SubContext importing(context, "import", 0.0, learn ? kImportShare : 1.0);
+  GRASPDB_TRY(imported, service_.ImportObject(order, importing.context()));
+  if (learn) {
+    SubContext learning(context, "learn", kImportShare, 1.0);
+    LearnOrder lesson;
+    lesson.object_id = imported.object.id;
+    lesson.seed = order.seed;
+    const auto spaces = service_.LearnObject(lesson, learning.context());
+    if (!spaces) return spaces.error();
+  }
+  return imported.object.id;
+}
+
+}  // namespace graspdb

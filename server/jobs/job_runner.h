@@ -1,0 +1,94 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/base/execution_context.h"
+#include "engine/base/result.h"
+#include "server/records.h"
+
+namespace graspdb {
+
+class Service;
+
+/** Takes jobs from the store and carries them out by the service's verbs, one
+ after the other in each of its two threads: transfers, and all else. The row of
+ a job says where it stands at rest; while it runs, its progress is only
+ here. */
+class JobRunner {
+ public:
+  explicit JobRunner(Service& service);
+  ~JobRunner();
+  JobRunner(const JobRunner&) = delete;
+  JobRunner& operator=(const JobRunner&) = delete;
+
+  Result<void> Start();
+  void Stop();
+  /** There is a new job. */
+  void Wake();
+
+  Result<StoredJob> Find(const std::string& id) const;
+  /** Adds progress, stage and eta to a job that runs here. */
+  void AddLiveState(StoredJob& job) const;
+  Result<StoredJob> Cancel(const std::string& id);
+  /** Returns when `enough(job)`, or after the timeout. */
+  template <class F>
+  Result<StoredJob> WaitUntil(const std::string& id,
+                              std::chrono::milliseconds timeout,
+                              F&& enough) const;
+
+ private:
+  using Clock = ExecutionContext::Clock;
+  struct LiveJob {
+    std::string stage;
+    double progress{0.0};
+    Clock::time_point started;
+    std::shared_ptr<ExecutionContext> context;
+    bool cancelled_by_user{false};
+  };
+
+  void Work(const std::vector<JobKind>& kinds);
+  void Run(StoredJob job);
+  // The id of what the job made.
+  Result<std::string> Execute(const StoredJob& job, ExecutionContext& context);
+  Result<std::string> ExecuteImport(const StoredJob& job,
+                                    const std::string& payload,
+                                    ExecutionContext& context);
+  // Something that waiters may wait for has changed.
+  void Notify();
+
+  Service& service_;
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  uint64_t changes_{0};
+  bool stopping_{false};
+  std::map<std::string, LiveJob> live_;
+  std::vector<std::thread> workers_;
+};
+
+template <class F>
+Result<StoredJob> JobRunner::WaitUntil(const std::string& id,
+                                       std::chrono::milliseconds timeout,
+                                       F&& enough) const {
+  const auto deadline = Clock::now() + timeout;
+  while (true) {
+    uint64_t seen = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      seen = changes_;
+    }
+    GRASPDB_TRY(job, Find(id));
+    if (job.Finished() || enough(job) || Clock::now() >= deadline) return job;
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, deadline, [&] { return changes_ != seen; });
+  }
+}
+
+}  // namespace graspdb

@@ -1,0 +1,242 @@
+#include "server/jobs/segmentation.h"
+
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "engine/geometry/surface_index.h"
+#include "engine/segmentation/part_cutting.h"
+
+namespace graspdb {
+namespace {
+
+// Per face of `to`, the label of the face of `from` nearest to its centroid.
+std::vector<int> CarryLabels(const TriangleMesh& from,
+                             const std::vector<int>& labels,
+                             const TriangleMesh& to) {
+  if (from == to) return labels;
+  const SurfaceIndex index(from);
+  std::vector<int> carried;
+  for (int f = 0; f < to.num_triangles(); ++f) {
+    const auto closest = index.FindClosest(to.centroid(f));
+    carried.push_back(labels[static_cast<size_t>(closest->face)]);
+  }
+  return carried;
+}
+
+// For each label the labels that share an edge with it.
+std::map<int, std::set<int>> FindAdjacency(const TriangleMesh& mesh,
+                                           const std::vector<int>& labels) {
+  std::map<std::pair<int, int>, int> first_label;
+  std::map<int, std::set<int>> adjacent;
+  for (int f = 0; f < mesh.num_triangles(); ++f) {
+    const Eigen::Vector3i& t = mesh.triangles()[f];
+    for (int k = 0; k < 3; ++k) {
+      const std::pair<int, int> edge = std::minmax(t[k], t[(k + 1) % 3]);
+      const int label = labels[static_cast<size_t>(f)];
+      const int other = first_label.emplace(edge, label).first->second;
+      if (other == label) continue;
+      adjacent[label].insert(other);
+      adjacent[other].insert(label);
+    }
+  }
+  return adjacent;
+}
+
+// The rows of the parts whose solids were cut.
+std::vector<StoredPart> DescribeParts(const StoredCategory& category,
+                                      const ObjectMeshes& meshes,
+                                      const std::vector<Part>& solids) {
+  const auto label_of = [&](int index) {
+    return category.parts[static_cast<size_t>(index)].label;
+  };
+  const auto adjacency =
+      FindAdjacency(meshes.canonical, meshes.canonical_labels);
+  std::vector<StoredPart> parts;
+  for (const Part& solid : solids) {
+    StoredPart part;
+    part.label_index = solid.label;
+    part.label = label_of(solid.label);
+    part.confidence = solid.confidence;
+    part.volume = CalcMassProperties(solid.solid_O).volume;
+    for (int f = 0; f < solid.num_surface_faces; ++f) {
+      part.area += solid.solid_O.area(f);
+    }
+    for (size_t f = 0; f < meshes.canonical_labels.size(); ++f) {
+      if (meshes.canonical_labels[f] == solid.label) {
+        part.faces.push_back(static_cast<int>(f));
+      }
+    }
+    if (const auto found = adjacency.find(solid.label);
+        found != adjacency.end()) {
+      for (const int other : found->second) {
+        part.adjacent.push_back(label_of(other));
+      }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+SegmentedObject MakeSegmentedObject(const StoredCategory& category,
+                                    const ObjectMeshes& meshes,
+                                    const ExampleSet& examples,
+                                    const SegmentationParameters& parameters,
+                                    SegmentationResult result) {
+  SegmentedObject object;
+  object.category = category.name;
+  StoredSegmentation& record = object.record;
+  record.method = parameters.by_shape_diameter ? "shape_diameter" : "transfer";
+  record.verdict = ToString(result.verdict);
+  record.example_id = examples.ids[static_cast<size_t>(result.example)];
+  record.X_NE = result.X_NE;
+  record.scale = result.scale;
+  record.residual = result.residual;
+  record.similarity = result.similarity;
+  record.warnings = std::move(result.warnings);
+  object.meshes = meshes;
+  object.meshes.work_labels = std::move(result.face_labels);
+  object.meshes.canonical_labels =
+      CarryLabels(meshes.work, object.meshes.work_labels, meshes.canonical);
+  object.parts = DescribeParts(category, object.meshes, result.parts);
+  object.solids = std::move(result.parts);
+  return object;
+}
+
+}  // namespace
+
+Result<ExampleSet> LoadExamples(const Store& store, const std::string& category,
+                                const std::string& except) {
+  ExampleSet examples;
+  PageRequest page{1000, ""};
+  do {
+    GRASPDB_TRY(objects,
+                store.ListObjects({category, ObjectRole::kExample}, page));
+    for (const StoredObject& object : objects.items) {
+      if (object.id == except) continue;
+      GRASPDB_TRY(meshes, store.ReadObjectMeshes(object.id));
+      if (meshes.work_labels.empty()) continue;
+      examples.ids.push_back(object.id);
+      examples.meshes.push_back(
+          {std::move(meshes.work), std::move(meshes.work_labels)});
+    }
+    page.cursor = objects.next_cursor;
+  } while (!page.cursor.empty());
+  return examples;
+}
+
+Result<SegmentedObject> SegmentByLabels(
+    const StoredCategory& category, const ObjectMeshes& meshes,
+    const std::vector<std::string>& labels) {
+  if (std::ssize(labels) != meshes.canonical.num_triangles()) {
+    return Error{
+        ErrorCode::kInvalidArgument,
+        fmt::format("There are {} face labels for {} faces.", labels.size(),
+                    meshes.canonical.num_triangles()),
+        "label the faces of GET /v1/objects/{id}/mesh; a mesh that had to be "
+        "repaired has other faces than its file",
+        "face_labels"};
+  }
+  std::map<std::string, int> indices;
+  for (const CategoryPart& part : category.parts) {
+    indices.emplace(part.label, static_cast<int>(indices.size()));
+  }
+  ObjectMeshes labelled = meshes;
+  labelled.canonical_labels.clear();
+  for (const std::string& label : labels) {
+    const auto found = indices.find(label);
+    if (found == indices.end()) {
+      std::string known;
+      for (const CategoryPart& part : category.parts) {
+        known += (known.empty() ? "" : ", ") + part.label;
+      }
+      return Error{
+          ErrorCode::kInvalidArgument,
+          "Category '" + category.name + "' has no part '" + label + "'.",
+          "known: " + known, "face_labels"};
+    }
+    labelled.canonical_labels.push_back(found->second);
+  }
+  labelled.work_labels =
+      CarryLabels(labelled.canonical, labelled.canonical_labels, labelled.work);
+  StoredSegmentation record;
+  record.method = "labels";
+  record.verdict = ToString(SegmentationVerdict::kMatched);
+  record.similarity = 1.0;
+  return CutLabelledObject(category, record, labelled);
+}
+
+Result<SegmentedObject> CutLabelledObject(const StoredCategory& category,
+                                          const StoredSegmentation& record,
+                                          const ObjectMeshes& meshes) {
+  SegmentedObject object;
+  object.category = category.name;
+  object.record = record;
+  object.meshes = meshes;
+  GRASPDB_TRY(solids, CutIntoParts({meshes.work, meshes.work_labels},
+                                   MakeVocabulary(category)));
+  object.parts = DescribeParts(category, meshes, solids);
+  object.solids = std::move(solids);
+  return object;
+}
+
+Result<SegmentedObject> SegmentByExamples(
+    const Store& store, const StoredCategory& category,
+    const SegmentationParameters& parameters, const ObjectMeshes& meshes,
+    const std::string& except, uint64_t seed, ExecutionContext& context) {
+  GRASPDB_TRY(examples, LoadExamples(store, category.name, except));
+  if (examples.ids.empty()) {
+    return Error{
+        ErrorCode::kConflict,
+        "Category '" + category.name + "' has no example to tell the parts by.",
+        "POST /v1/categories/" + category.name +
+            "/examples with a mesh and its face labels, or graspdb "
+            "populate data",
+        "category"};
+  }
+  GRASPDB_TRY(result,
+              SegmentObject(meshes.work, MakeVocabulary(category),
+                            examples.meshes, parameters, seed, context));
+  return MakeSegmentedObject(category, meshes, examples, parameters,
+                             std::move(result));
+}
+
+Result<SegmentedObject> SegmentByAnyCategory(const Store& store,
+                                             const ObjectMeshes& meshes,
+                                             const std::string& except,
+                                             uint64_t seed,
+                                             ExecutionContext& context) {
+  std::optional<SegmentedObject> best;
+  PageRequest page{1000, ""};
+  do {
+    GRASPDB_TRY(categories, store.ListCategories(page));
+    for (const StoredCategory& category : categories.items) {
+      auto found = SegmentByExamples(store, category, category.segmentation,
+                                     meshes, except, seed, context);
+      if (!found && found.error().code == ErrorCode::kCancelled) {
+        return found.error();
+      }
+      if (found &&
+          (!best || found->record.similarity > best->record.similarity)) {
+        best = std::move(*found);
+      }
+    }
+    page.cursor = categories.next_cursor;
+  } while (!page.cursor.empty());
+  if (!best) {
+    return Error{ErrorCode::kConflict,
+                 "There is no example of any category to compare with.",
+                 "graspdb populate data", "category"};
+  }
+  if (best->record.verdict == ToString(SegmentationVerdict::kForeign)) {
+    return Error{ErrorCode::kNotInCategory,
+                 fmt::format("The object is like no example; the nearest is a "
+                             "{}, with similarity {:.2f}.",
+                             best->category, best->record.similarity),
+                 "name its category, or add an example like it", "category"};
+  }
+  return *best;
+}
+
+}  // namespace graspdb

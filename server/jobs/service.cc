@@ -1,0 +1,242 @@
+#include "server/jobs/service.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "engine/geometry/mesh_format.h"
+#include "engine/hand/hand_reader.h"
+#include "server/codec/input_json.h"
+#include "server/decode/decode_client.h"
+#include "server/ids.h"
+#include "server/jobs/job_runner.h"
+
+namespace graspdb {
+namespace {
+
+// Names that users choose become parts of paths: [a-z0-9][a-z0-9_-]{0,63}.
+Result<void> CheckName(const std::string& name, const std::string& field) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+  };
+  const bool sound = !name.empty() && name.size() <= 64 && is_plain(name[0]) &&
+                     std::all_of(name.begin(), name.end(), [&](char c) {
+                       return is_plain(c) || c == '_' || c == '-';
+                     });
+  if (sound) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               field +
+                   " must be 1 to 64 of a-z, 0-9, _ and -, beginning with "
+                   "a letter or digit.",
+               "", field};
+}
+
+Result<void> CheckCategory(const StoredCategory& category) {
+  GRASPDB_TRY_VOID(CheckName(category.name, "name"));
+  if (category.name == "auto") {
+    return Error{ErrorCode::kInvalidArgument,
+                 "auto stands for any category and cannot be a name.", "",
+                 "name"};
+  }
+  if (category.parts.empty() || category.parts.size() > 64) {
+    return Error{ErrorCode::kInvalidArgument, "A category has 1 to 64 parts.",
+                 "", "parts"};
+  }
+  std::set<std::string> labels;
+  for (const CategoryPart& part : category.parts) {
+    GRASPDB_TRY_VOID(CheckName(part.label, "label"));
+    if (!labels.insert(part.label).second) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "The label '" + part.label + "' is there twice.", "",
+                   "parts"};
+    }
+  }
+  Parameters parameters;
+  parameters.segmentation = category.segmentation;
+  return ValidateParameters(parameters);
+}
+
+std::string CalcHandSha256(const HandFiles& files) {
+  std::string content = CalcSha256(files.annotations) + CalcSha256(files.urdf);
+  for (const auto& [name, bytes] : files.meshes) {
+    content += CalcSha256(name) + CalcSha256(bytes);
+  }
+  return CalcSha256(content);
+}
+
+Result<std::shared_ptr<const HandModel>> BuildHand(const StoredHand& hand) {
+  GRASPDB_TRY(file, HandFileFromJson(hand.annotations));
+  const auto load = [&](const std::string& name) -> Result<TriangleMesh> {
+    for (const auto& [known, mesh] : hand.meshes) {
+      if (known == name) return mesh;
+    }
+    return Error{ErrorCode::kUnusableInput,
+                 "The URDF refers to " + name + ", which is not there.",
+                 "send every mesh that it refers to", "meshes"};
+  };
+  GRASPDB_TRY(model, ReadHand(hand.urdf, file.annotations, load));
+  return std::make_shared<const HandModel>(std::move(model));
+}
+
+}  // namespace
+
+Service::Service(std::unique_ptr<Store> store, std::unique_ptr<Decoder> decoder,
+                 const ServiceOptions& options)
+    : store_(std::move(store)),
+      decoder_(std::move(decoder)),
+      options_(options),
+      runner_(std::make_unique<JobRunner>(*this)) {
+  GRASPDB_EXPECTS(store_ != nullptr && decoder_ != nullptr);
+}
+
+Service::~Service() = default;
+
+Result<std::string> Service::CheckDecoder() const { return decoder_->Check(); }
+
+Result<StoredCategory> Service::AddCategory(const StoredCategory& category) {
+  GRASPDB_TRY_VOID(CheckCategory(category));
+  return store_->InsertCategory(category);
+}
+
+Result<StoredCategory> Service::UpdateCategory(const StoredCategory& category) {
+  GRASPDB_TRY_VOID(CheckCategory(category));
+  return store_->UpdateCategory(category);
+}
+
+Result<StoredHand> Service::AddHand(const HandFiles& files) {
+  GRASPDB_TRY(file, HandFileFromJson(files.annotations));
+  StoredHand hand;
+  hand.name = file.annotations.name;
+  hand.title = file.title;
+  hand.sha256 = CalcHandSha256(files);
+  hand.urdf = files.urdf;
+  hand.annotations = files.annotations;
+  GRASPDB_TRY_VOID(CheckName(hand.name, "name"));
+  if (auto known = store_->FindHand(hand.name);
+      known && known->sha256 == hand.sha256) {
+    return *known;
+  }
+  for (const auto& [name, bytes] : files.meshes) {
+    DecodeRequest request;
+    request.file_name = name;
+    GRASPDB_TRY(decoded, decoder_->Decode(
+                             {reinterpret_cast<const uint8_t*>(bytes.data()),
+                              bytes.size()},
+                             request));
+    hand.meshes.emplace_back(name, std::move(decoded.mesh_O));
+  }
+  if (const auto model = BuildHand(hand); !model) return model.error();
+  return store_->InsertHand(hand);
+}
+
+Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
+    const std::string& name) const {
+  {
+    const std::lock_guard lock(hands_mutex_);
+    if (const auto known = hands_.find(name); known != hands_.end()) {
+      return known->second;
+    }
+  }
+  GRASPDB_TRY(hand, store_->FindHand(name));
+  GRASPDB_TRY(model, BuildHand(hand));
+  const std::lock_guard lock(hands_mutex_);
+  return hands_.emplace(name, model).first->second;
+}
+
+Result<Page<StoredGrasp>> Service::QueryGrasps(
+    const GraspSearch& search) const {
+  GraspQuery query = search.query;
+  if (!query.category.empty()) {
+    if (const auto known = store_->FindCategory(query.category); !known) {
+      return known.error();
+    }
+  }
+  if (!query.hand.empty()) {
+    if (const auto known = FindHandModel(query.hand); !known) {
+      return known.error();
+    }
+  }
+  if (!query.object_id.empty()) {
+    if (const auto known = store_->FindObject(query.object_id); !known) {
+      return known.error();
+    }
+  }
+  if (search.task.empty()) return store_->QueryGrasps(query);
+  if (!query.part_labels.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "Give parts or a task, not both.",
+                 "", "task"};
+  }
+  if (query.category.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "What serves a task depends on the category.",
+                 "name the category too", "category"};
+  }
+  GRASPDB_TRY(category, store_->FindCategory(query.category));
+  query.part_labels = FindPartsForTask(category, search.task);
+  if (query.part_labels.empty()) return Page<StoredGrasp>();
+  return store_->QueryGrasps(query);
+}
+
+// ---- Jobs -------------------------------------------------------------------
+
+Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
+                                        const std::string& idempotency_key) {
+  GRASPDB_TRY(checked, CheckImport(order));
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kImport, ToJson(checked),
+                                     checked.bytes, idempotency_key));
+  runner_->Wake();
+  return job;
+}
+
+Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
+                                       const std::string& idempotency_key) {
+  GRASPDB_TRY_VOID(CheckLearn(order));
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kLearn, ToJson(order), "",
+                                     idempotency_key));
+  runner_->Wake();
+  return job;
+}
+
+Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
+                                          const std::string& idempotency_key) {
+  GRASPDB_TRY(checked, CheckTransfer(order));
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kTransfer, ToJson(checked),
+                                     checked.mesh.bytes, idempotency_key));
+  runner_->Wake();
+  return job;
+}
+
+Result<StoredJob> Service::FindJob(const std::string& id) const {
+  return runner_->Find(id);
+}
+
+Result<Page<StoredJob>> Service::ListJobs(std::optional<JobState> state,
+                                          const PageRequest& page) const {
+  GRASPDB_TRY(jobs, store_->ListJobs(state, page));
+  for (StoredJob& job : jobs.items) runner_->AddLiveState(job);
+  return std::move(jobs);
+}
+
+Result<StoredJob> Service::WaitForJob(const std::string& id,
+                                      std::chrono::milliseconds timeout) const {
+  return runner_->WaitUntil(id, timeout,
+                            [](const StoredJob&) { return false; });
+}
+
+Result<StoredJob> Service::WaitForChange(
+    const StoredJob& seen, std::chrono::milliseconds timeout) const {
+  return runner_->WaitUntil(seen.id, timeout, [&](const StoredJob& job) {
+    return job.state != seen.state || job.stage != seen.stage ||
+           job.progress != seen.progress;
+  });
+}
+
+Result<StoredJob> Service::CancelJob(const std::string& id) {
+  return runner_->Cancel(id);
+}
+
+Result<void> Service::StartWorkers() { return runner_->Start(); }
+void Service::StopWorkers() { runner_->Stop(); }
+
+}  // namespace graspdb

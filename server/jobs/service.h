@@ -1,0 +1,163 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/execution_context.h"
+#include "engine/base/result.h"
+#include "engine/parameters.h"
+#include "server/orders.h"
+#include "server/records.h"
+#include "server/store/store.h"
+
+namespace graspdb {
+
+class Decoder;
+class JobRunner;
+
+/** GET /v1/grasps: a GraspQuery and what only the category knows. */
+struct GraspSearch {
+  GraspQuery query;
+  std::string task;  ///< Parts that serve it, of query.category or any.
+};
+
+/** A hand's files, as in data/hands/<name>. */
+struct HandFiles {
+  std::string annotations;  ///< hand.json
+  std::string urdf;
+  /** By the file names that the URDF uses. */
+  std::vector<std::pair<std::string, std::string>> meshes;
+};
+
+struct ServiceOptions {
+  int threads{0};  ///< Of the engine; 0: as many as there are cores.
+  int64_t max_mesh_bytes{64 << 20};
+  int64_t max_triangles{400'000};
+};
+
+/** What an import led to. */
+struct ImportResult {
+  StoredObject object;
+  std::vector<StoredPart> parts;
+  bool created{false};  ///< False when the object was stored before.
+};
+
+/** The verbs of the application, without HTTP: what the server's routes and the
+ command line both call. Thread-safe. Each error says in its hint what to do
+ next; http/problem.cc maps its code to a status. */
+class Service {
+ public:
+  /** @param decoder  Reads uploaded meshes, see server/decode. */
+  Service(std::unique_ptr<Store> store, std::unique_ptr<Decoder> decoder,
+          const ServiceOptions& options);
+  /** Stops the workers: running jobs go back into the queue. */
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /** Reading and plain rows: lists, Find…, Read…, deletes. */
+  Store& store() { return *store_; }
+  const Store& store() const { return *store_; }
+  const ServiceOptions& options() const { return options_; }
+
+  /** Whether meshes can be decoded, and how the helper is confined. */
+  Result<std::string> CheckDecoder() const;
+
+  // ---- Immediate verbs ------------------------------------------------------
+  /** Checks names and labels, then stores.
+   @retval kConflict when the name is taken. */
+  Result<StoredCategory> AddCategory(const StoredCategory& category);
+  Result<StoredCategory> UpdateCategory(const StoredCategory& category);
+  /** Reads the hand once, so that only a usable one is stored. */
+  Result<StoredHand> AddHand(const HandFiles& files);
+  /** The built hand, shared by all callers. */
+  Result<std::shared_ptr<const HandModel>> FindHandModel(
+      const std::string& name) const;
+
+  /** Decodes, segments and stores a mesh. Idempotent in (bytes, units, role,
+   category). An object of no category is stored without parts. An example
+   without face labels needs another example of its category. */
+  Result<ImportResult> ImportObject(const ImportOrder& order,
+                                    ExecutionContext& context);
+  /** Segments a stored object again, or takes the given labels. */
+  Result<ImportResult> Resegment(const SegmentOrder& order,
+                                 ExecutionContext& context);
+  /** PATCH of a part: its faces get another label of the category. Parts of the
+   same label become one. */
+  Result<ImportResult> Relabel(const std::string& part_id,
+                               const std::string& label, bool cascade);
+
+  /** Learns the grasp space of every part and hand that is not known yet and
+   answers them all, known ones included. */
+  Result<std::vector<StoredGraspSpace>> LearnObject(const LearnOrder& order,
+                                                    ExecutionContext& context);
+  /** Maps, replans, assembles, stores; a transfer with the same inputs is
+   answered from the store. */
+  Result<TransferAnswer> TransferGrasps(const TransferOrder& order,
+                                        ExecutionContext& context);
+  /** The answer to a stored transfer. @param count  As in TransferOrder. */
+  Result<TransferAnswer> DescribeTransfer(const std::string& transfer_id,
+                                          std::optional<int> count) const;
+
+  Result<Page<StoredGrasp>> QueryGrasps(const GraspSearch& search) const;
+
+  // ---- Jobs -----------------------------------------------------------------
+  // Submit… checks what can be checked at once (names, ranges, what is
+  // learned), writes the job to the database and returns it queued.
+  Result<StoredJob> SubmitImport(const ImportOrder& order,
+                                 const std::string& idempotency_key = "");
+  Result<StoredJob> SubmitLearn(const LearnOrder& order,
+                                const std::string& idempotency_key = "");
+  Result<StoredJob> SubmitTransfer(const TransferOrder& order,
+                                   const std::string& idempotency_key = "");
+  /** The job with its live progress. */
+  Result<StoredJob> FindJob(const std::string& id) const;
+  Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
+                                   const PageRequest& page) const;
+  /** Returns when the job has finished or after the timeout, whichever comes
+   first, the job as it then is. */
+  Result<StoredJob> WaitForJob(const std::string& id,
+                               std::chrono::milliseconds timeout) const;
+  /** Returns when the job differs from `seen` in state, stage or progress, has
+   finished, or after the timeout: for server-sent events. */
+  Result<StoredJob> WaitForChange(const StoredJob& seen,
+                                  std::chrono::milliseconds timeout) const;
+  /** A queued job is cancelled at once, a running one within moments, one that
+   has finished stays as it is. */
+  Result<StoredJob> CancelJob(const std::string& id);
+
+  /** Queues what a dead process left running and starts the workers: one for
+   transfers, one for imports and learning, so that no transfer waits for
+   minutes. Only a server calls this. */
+  Result<void> StartWorkers();
+  /** Running jobs go back into the queue; returns when the workers have ended.
+   Safe to call twice. */
+  void StopWorkers();
+
+ private:
+  friend class JobRunner;
+
+  // With the defaults filled in.
+  Result<ImportOrder> CheckImport(const ImportOrder& order) const;
+  Result<TransferOrder> CheckTransfer(const TransferOrder& order) const;
+  Result<void> CheckLearn(const LearnOrder& order) const;
+  Result<ImportResult> ImportNewObject(const ImportOrder& order,
+                                       ExecutionContext& context);
+  Result<StoredObject> FindTransferObject(const TransferOrder& order,
+                                          ExecutionContext& context);
+
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<Decoder> decoder_;
+  ServiceOptions options_;
+  mutable std::mutex hands_mutex_;
+  mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;
+  std::unique_ptr<JobRunner> runner_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,310 @@
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "engine/render/grasp_scene.h"
+#include "engine/render/png_encoder.h"
+#include "engine/render/scene_renderer.h"
+#include "server/codec/grasp_formats.h"
+#include "server/codec/parameters_json.h"
+#include "server/codec/record_json.h"
+#include "server/routes/routes.h"
+#include "server/routes/support.h"
+
+namespace graspdb {
+namespace {
+
+/** How the grasps of an answer are written. */
+enum class GraspFormat { kJson, kCsv, kRos };
+
+/** The parameter as. @retval kNotImplemented for graspit. */
+Result<GraspFormat> ReadFormat(QueryReader& query) {
+  const auto as = query.Choice("as", {"json", "csv", "ros", "graspit"});
+  if (as == "csv") return GraspFormat::kCsv;
+  if (as == "ros") return GraspFormat::kRos;
+  if (as == "graspit") {
+    return Error{ErrorCode::kNotImplemented,
+                 "Grasps as GraspIt! worlds are not built yet.",
+                 "as takes json, csv, ros.", "as"};
+  }
+  return GraspFormat::kJson;
+}
+
+HttpResponse MakeGraspsResponse(const std::vector<GraspOfHand>& grasps,
+                                GraspFormat format) {
+  if (format == GraspFormat::kRos) {
+    return MakeJsonResponse(200, GraspsToRos(grasps));
+  }
+  HttpResponse response;
+  response.content_type = "text/csv; charset=utf-8";
+  response.body = GraspsToCsv(grasps);
+  return response;
+}
+
+/** The grasps, each with its hand. */
+Result<std::vector<GraspOfHand>> PairWithHands(
+    const Service& service, const std::vector<StoredGrasp>& grasps) {
+  std::vector<GraspOfHand> pairs;
+  for (const StoredGrasp& grasp : grasps) {
+    GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
+    pairs.push_back({&grasp, hand});
+  }
+  return pairs;
+}
+
+Result<GraspSearch> ReadSearch(QueryReader& query) {
+  GraspSearch search;
+  GraspQuery& wanted = search.query;
+  search.task = query.Text("task").value_or("");
+  wanted.category = query.Text("category").value_or("");
+  wanted.part_labels = ReadList(query, "part");
+  wanted.hand = query.Text("hand").value_or("");
+  wanted.object_id = query.Text("object").value_or("");
+  wanted.grasp_space_id = query.Text("grasp_space").value_or("");
+  wanted.transfer_id = query.Text("transfer").value_or("");
+  wanted.min_epsilon = query.Number("min_epsilon", 0.0, 1.0);
+  wanted.verified = query.Boolean("verified");
+  if (const auto stage =
+          query.Choice("stage", {"learned", "transfer", "assembly"})) {
+    GRASPDB_TRY(parsed, ParseGraspStage(*stage));
+    wanted.stage = parsed;
+  }
+  using Sort = GraspQuery::Sort;
+  const auto sort =
+      query.Choice("sort", {"epsilon", "hybrid", "robust", "newest"});
+  wanted.sort = sort == "hybrid"   ? Sort::kHybrid
+                : sort == "robust" ? Sort::kRobust
+                : sort == "newest" ? Sort::kNewest
+                                   : Sort::kEpsilon;
+  wanted.page = ReadPage(query);
+  return search;
+}
+
+Error MakeUnknownLabel(const std::string& field, const std::string& name,
+                       const StoredCategory& category,
+                       const std::set<std::string>& known) {
+  return {
+      ErrorCode::kNotFound,
+      fmt::format("The category {} has no {} {}.", category.name, field, name),
+      fmt::format("Known are {}.", fmt::join(known, ", ")), field};
+}
+
+/** Whether what the search names exists. Of parts and tasks only a category
+ knows. */
+Result<void> CheckNames(const Store& store, const GraspSearch& search) {
+  const GraspQuery& wanted = search.query;
+  if (!wanted.grasp_space_id.empty()) {
+    GRASPDB_TRY_VOID(Check(store.FindGraspSpace(wanted.grasp_space_id)));
+  }
+  if (!wanted.transfer_id.empty()) {
+    GRASPDB_TRY_VOID(Check(store.FindTransfer(wanted.transfer_id)));
+  }
+  if (wanted.category.empty()) return {};
+  GRASPDB_TRY(category, store.FindCategory(wanted.category));
+  std::set<std::string> labels;
+  std::set<std::string> tasks;
+  for (const CategoryPart& part : category.parts) {
+    labels.insert(part.label);
+    for (const auto& [task, note] : part.tasks) tasks.insert(task);
+  }
+  for (const std::string& label : wanted.part_labels) {
+    if (!labels.contains(label)) {
+      return MakeUnknownLabel("part", label, category, labels);
+    }
+  }
+  if (!search.task.empty() && !tasks.contains(search.task)) {
+    return MakeUnknownLabel("task", search.task, category, tasks);
+  }
+  return {};
+}
+
+Result<HttpResponse> ListGrasps(const Service& service,
+                                const HttpRequest& request) {
+  QueryReader query(request.query);
+  GRASPDB_TRY(search, ReadSearch(query));
+  const auto format = ReadFormat(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  if (!format) return format.error();
+  GRASPDB_TRY_VOID(CheckNames(service.store(), search));
+  GRASPDB_TRY(page, service.QueryGrasps(search));
+  GRASPDB_TRY(pairs, PairWithHands(service, page.items));
+  if (*format == GraspFormat::kJson) {
+    std::vector<std::string> items;
+    for (const auto& [grasp, hand] : pairs) {
+      items.push_back(ToJson(*grasp, *hand));
+    }
+    return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
+  }
+  HttpResponse response = MakeGraspsResponse(pairs, *format);
+  if (!page.next_cursor.empty()) {
+    response.headers.emplace_back("X-Next-Cursor", page.next_cursor);
+  }
+  return response;
+}
+
+Result<HttpResponse> GetGrasp(const Service& service,
+                              const HttpRequest& request) {
+  QueryReader query(request.query);
+  const auto format = ReadFormat(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  if (!format) return format.error();
+  GRASPDB_TRY(grasp,
+              service.store().FindGrasp(request.path_parameters.at("id")));
+  GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
+  if (*format == GraspFormat::kJson) {
+    return MakeJsonResponse(200, ToJson(grasp, *hand));
+  }
+  return MakeGraspsResponse({{&grasp, hand}}, *format);
+}
+
+Result<HttpResponse> DrawGrasp(const Service& service,
+                               std::mutex& one_at_a_time,
+                               const HttpRequest& request) {
+  QueryReader query(request.query);
+  View view;
+  view.width =
+      static_cast<int>(query.Integer("width", 64, 2048).value_or(view.width));
+  view.height =
+      static_cast<int>(query.Integer("height", 64, 2048).value_or(view.height));
+  const auto azimuth = query.Number("azimuth", -6.3, 6.3);
+  view.elevation =
+      query.Number("elevation", -1.5, 1.5).value_or(view.elevation);
+  GRASPDB_TRY_VOID(query.Finish());
+  GRASPDB_TRY(stored,
+              service.store().FindGrasp(request.path_parameters.at("id")));
+  GRASPDB_TRY(hand, service.FindHandModel(stored.hand));
+  GRASPDB_TRY(meshes, service.store().ReadObjectMeshes(stored.object_id));
+  PosedHand posed{
+      hand.get(), stored.grasp.configuration, stored.grasp.approach_O, {}};
+  for (const Contact& contact : stored.grasp.contacts) {
+    posed.contacts_O.push_back(contact.p_O);
+  }
+  if (azimuth) {
+    view.azimuth = *azimuth;
+  } else {
+    view = TurnTowards(meshes.canonical, posed, view);
+  }
+  const auto scene =
+      MakeGraspScene(meshes.canonical, meshes.canonical_labels, {posed});
+  const std::lock_guard lock(one_at_a_time);
+  const std::vector<uint8_t> png = EncodePng(RenderScene(scene, view));
+  HttpResponse response;
+  response.content_type = "image/png";
+  response.body.assign(png.begin(), png.end());
+  return response;
+}
+
+/** The parameters of POST /v1/grasps. */
+Result<TransferOrder> ReadTransferOrder(const HttpRequest& request,
+                                        QueryReader& query) {
+  TransferOrder order;
+  auto mesh = ReadUpload(request, query);
+  order.object_id = query.Text("object").value_or("");
+  order.category = query.Text("category").value_or("");
+  order.part_labels = ReadList(query, "part");
+  order.task = query.Text("task").value_or("");
+  order.hand = query.Text("hand").value_or(kDefaultHand);
+  if (const auto count = query.Integer("count", 1, 1000)) {
+    order.count = static_cast<int>(*count);
+  }
+  order.sources =
+      static_cast<int>(query.Integer("sources", 1, 1000).value_or(40));
+  order.stage = query.Choice("stage", {"transfer", "assembly"}) == "transfer"
+                    ? GraspStage::kTransfer
+                    : GraspStage::kAssembly;
+  order.seed = ReadSeed(query);
+  const auto parameters = query.Text("parameters", 4096);
+  const auto friction = query.Number("friction", 0.01, 2.0);
+  GRASPDB_TRY_VOID(query.Finish());
+  if (!mesh) return mesh.error();
+  if (parameters) {
+    GRASPDB_TRY(given, ParametersFromJson(*parameters, order.parameters));
+    order.parameters = given;
+  }
+  if (friction) order.parameters.contact.friction = *friction;
+  if (mesh->has_value()) {
+    order.mesh = std::move(**mesh);
+    order.mesh.seed = order.seed;
+    order.mesh.category = order.category;
+  }
+  return order;
+}
+
+/** One of a mesh and an object, one of parts and a task. */
+Result<void> CheckTransferOrder(const TransferOrder& order, bool has_mesh) {
+  if (has_mesh == !order.object_id.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 has_mesh ? "A mesh and a stored object are given at once."
+                          : "There is neither a mesh nor a stored object.",
+                 "Send the mesh as the body, or name a stored object with "
+                 "object=ID.",
+                 has_mesh ? "object" : "mesh"};
+  }
+  if (has_mesh && order.category.empty()) {
+    return Error{ErrorCode::kInvalidArgument, "The category is missing.",
+                 "category takes a category's name or auto.", "category"};
+  }
+  if (!order.part_labels.empty() && !order.task.empty()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "A part and a task are given at once.",
+                 "Give part, or task, or neither for all parts.", "task"};
+  }
+  return {};
+}
+
+Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
+                                const HttpRequest& request) {
+  QueryReader query(request.query);
+  const auto format = ReadFormat(query);
+  GRASPDB_TRY(order, ReadTransferOrder(request, query));
+  if (!format) return format.error();
+  const bool has_mesh = !request.body.empty() || !request.files.empty();
+  GRASPDB_TRY_VOID(CheckTransferOrder(order, has_mesh));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
+  GRASPDB_TRY(job, service.SubmitTransfer(order, idempotency.key()));
+  return AnswerJob(
+      service, request, options.default_wait, job, idempotency,
+      [&](const StoredJob& done) -> Result<HttpResponse> {
+        GRASPDB_TRY(answer,
+                    service.DescribeTransfer(done.result_id, order.count));
+        HttpResponse response;
+        if (*format == GraspFormat::kJson) {
+          response = MakeJsonResponse(200, ToJson(answer));
+        } else {
+          GRASPDB_TRY(pairs, PairWithHands(service, answer.grasps));
+          response = MakeGraspsResponse(pairs, *format);
+        }
+        for (const auto& [stage, seconds] : answer.transfer.seconds) {
+          response.timings.emplace_back(stage, seconds * 1e3);
+        }
+        return response;
+      });
+}
+
+}  // namespace
+
+void AddGraspRoutes(Router& router, Service& service,
+                    const RouteOptions& options) {
+  router.Add({"GET", "/v1/grasps", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return ListGrasps(service, request);
+              }});
+  router.Add({"POST", "/v1/grasps", BodyKind::kUpload,
+              [&service, options](const HttpRequest& request) {
+                return PostGrasps(service, options, request);
+              }});
+  router.Add({"GET", "/v1/grasps/{id}", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return GetGrasp(service, request);
+              }});
+  // Drawing takes all cores: one picture after the other.
+  auto one_at_a_time = std::make_shared<std::mutex>();
+  router.Add({"GET", "/v1/grasps/{id}.png", BodyKind::kNone,
+              [&service, one_at_a_time](const HttpRequest& request) {
+                return DrawGrasp(service, *one_at_a_time, request);
+              }});
+}
+
+}  // namespace graspdb

@@ -1,0 +1,58 @@
+#include "server/codec/record_json.h"
+#include "server/routes/routes.h"
+#include "server/routes/support.h"
+
+namespace graspdb {
+namespace {
+
+Result<HttpResponse> ListJobs(const Service& service,
+                              const HttpRequest& request) {
+  QueryReader query(request.query);
+  const auto word = query.Choice(
+      "state", {"queued", "running", "succeeded", "failed", "cancelled"});
+  const PageRequest page = ReadPage(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  std::optional<JobState> state;
+  if (word) {
+    GRASPDB_TRY(parsed, ParseJobState(*word));
+    state = parsed;
+  }
+  GRASPDB_TRY(found, service.ListJobs(state, page));
+  return MakeListResponse(found,
+                          [](const StoredJob& job) { return ToJson(job); });
+}
+
+Result<HttpResponse> GetJob(const Service& service,
+                            const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(job, service.FindJob(request.path_parameters.at("id")));
+  HttpResponse response = MakeJsonResponse(200, ToJson(job));
+  if (!job.Finished()) response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
+/** Cancels; the job itself stays to be read. */
+Result<HttpResponse> DeleteJob(Service& service, const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(job, service.CancelJob(request.path_parameters.at("id")));
+  return MakeJsonResponse(200, ToJson(job));
+}
+
+}  // namespace
+
+void AddJobRoutes(Router& router, Service& service) {
+  router.Add({"GET", "/v1/jobs", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return ListJobs(service, request);
+              }});
+  router.Add({"GET", "/v1/jobs/{id}", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return GetJob(service, request);
+              }});
+  router.Add({"DELETE", "/v1/jobs/{id}", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return DeleteJob(service, request);
+              }});
+}
+
+}  // namespace graspdb

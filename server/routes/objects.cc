@@ -1,0 +1,231 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "engine/geometry/mesh_reader.h"
+#include "server/codec/input_json.h"
+#include "server/codec/mesh_writer.h"
+#include "server/codec/record_json.h"
+#include "server/routes/routes.h"
+#include "server/routes/support.h"
+
+namespace graspdb {
+namespace {
+
+const std::string& Id(const HttpRequest& request) {
+  return request.path_parameters.at("id");
+}
+
+Result<HttpResponse> ListObjects(const Service& service,
+                                 const HttpRequest& request) {
+  QueryReader query(request.query);
+  ObjectFilter filter;
+  filter.category = query.Text("category").value_or("");
+  const auto role = query.Choice("role", {"example", "novel"});
+  const PageRequest page = ReadPage(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  if (role) {
+    filter.role = role == "example" ? ObjectRole::kExample : ObjectRole::kNovel;
+  }
+  if (!filter.category.empty()) {
+    GRASPDB_TRY_VOID(Check(service.store().FindCategory(filter.category)));
+  }
+  GRASPDB_TRY(found, service.store().ListObjects(filter, page));
+  return MakeListResponse(
+      found, [](const StoredObject& object) { return ToJson(object); });
+}
+
+Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
+  QueryReader query(request.query);
+  auto upload = ReadUpload(request, query, {"labels"});
+  const auto category = query.Text("category");
+  const auto role = query.Choice("role", {"example", "novel"});
+  const auto name = query.Text("name");
+  const uint64_t seed = ReadSeed(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  if (!upload) return upload.error();
+  if (!upload->has_value()) return MakeMissingMesh();
+  ImportOrder order = std::move(**upload);
+  order.category = category.value_or("");
+  order.role = role == "example" ? ObjectRole::kExample : ObjectRole::kNovel;
+  order.name = name.value_or("");
+  order.seed = seed;
+  order.learn = false;
+  if (const auto labels = FindFile(request, "labels")) {
+    GRASPDB_TRY(face_labels, FaceLabelsFromJson(*labels));
+    order.face_labels = face_labels;
+  }
+  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+    RequestContext context(request);
+    GRASPDB_TRY(imported, service.ImportObject(order, context.context()));
+    HttpResponse response = MakeJsonResponse(
+        imported.created ? 201 : 200, ToJson(imported.object, imported.parts));
+    response.headers.emplace_back("Location",
+                                  "/v1/objects/" + imported.object.id);
+    return response;
+  });
+}
+
+Result<HttpResponse> GetObject(const Service& service,
+                               const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  return DescribeObject(service, 200, Id(request));
+}
+
+Result<HttpResponse> DeleteObject(Service& service,
+                                  const HttpRequest& request) {
+  QueryReader query(request.query);
+  const bool cascade = query.Boolean("cascade").value_or(false);
+  GRASPDB_TRY_VOID(query.Finish());
+  GRASPDB_TRY_VOID(service.store().DeleteObject(Id(request), cascade));
+  return MakeJsonResponse(204, "");
+}
+
+/** The closed solid of one part, cut faces included. */
+Result<TriangleMesh> FindPartMesh(const Store& store, const std::string& object,
+                                  const std::string& part) {
+  GRASPDB_TRY(parts, store.ListParts(object));
+  GRASPDB_TRY(solids, store.ReadSolids(object));
+  std::string known;
+  for (size_t i = 0; i < parts.size() && i < solids.size(); ++i) {
+    if (parts[i].label == part || parts[i].id == part) return solids[i].solid_O;
+    known += (known.empty() ? "" : ", ") + parts[i].label;
+  }
+  return Error{ErrorCode::kNotFound,
+               fmt::format("The object has no part {}.", part),
+               known.empty() ? "The object has no parts: segment it first."
+                             : fmt::format("Its parts are {}.", known),
+               "part"};
+}
+
+HttpResponse MakeFileResponse(std::string bytes, const std::string& id,
+                              const std::string& format) {
+  HttpResponse response;
+  response.content_type = format == "obj"   ? "model/obj"
+                          : format == "stl" ? "model/stl"
+                                            : "application/octet-stream";
+  response.headers.emplace_back(
+      "Content-Disposition",
+      fmt::format("attachment; filename=\"{}.{}\"", id, format));
+  response.body = std::move(bytes);
+  return response;
+}
+
+Result<HttpResponse> GetMesh(const Service& service,
+                             const HttpRequest& request) {
+  QueryReader query(request.query);
+  const std::string format =
+      query.Choice("format", {"obj", "stl", "ply", "glb", "original"})
+          .value_or("obj");
+  const auto part = query.Text("part");
+  GRASPDB_TRY_VOID(query.Finish());
+  const Store& store = service.store();
+  GRASPDB_TRY(object, store.FindObject(Id(request)));
+  if (format == "glb") {
+    return Error{ErrorCode::kNotImplemented, "glb is not written yet.",
+                 "format takes obj, stl, ply, original.", "format"};
+  }
+  if (format == "original") {
+    if (part) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "The original file has no parts.",
+                   "With part, format takes obj, stl, ply.", "format"};
+    }
+    GRASPDB_TRY(bytes, store.ReadObjectBytes(object.id));
+    return MakeFileResponse(std::move(bytes), object.id, object.format);
+  }
+  GRASPDB_TRY(mesh_format, ParseMeshFormat(format));
+  if (part) {
+    GRASPDB_TRY(mesh, FindPartMesh(store, object.id, *part));
+    return MakeFileResponse(WriteMesh(mesh, mesh_format), object.id, format);
+  }
+  GRASPDB_TRY(meshes, store.ReadObjectMeshes(object.id));
+  return MakeFileResponse(WriteMesh(meshes.canonical, mesh_format), object.id,
+                          format);
+}
+
+Result<HttpResponse> ListParts(const Service& service,
+                               const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(object, service.store().FindObject(Id(request)));
+  Page<StoredPart> page;
+  GRASPDB_TRY(parts, service.store().ListParts(object.id));
+  page.items = std::move(parts);
+  return MakeListResponse(page,
+                          [](const StoredPart& part) { return ToJson(part); });
+}
+
+Result<HttpResponse> PostSegmentation(Service& service,
+                                      const HttpRequest& request) {
+  QueryReader query(request.query);
+  const bool cascade = query.Boolean("cascade").value_or(false);
+  GRASPDB_TRY_VOID(query.Finish());
+  GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
+  order.object_id = Id(request);
+  order.cascade = cascade;
+  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+    RequestContext context(request);
+    GRASPDB_TRY(done, service.Resegment(order, context.context()));
+    return MakeJsonResponse(200, ToJson(done.object, done.parts));
+  });
+}
+
+Result<HttpResponse> PostGraspSpaces(Service& service,
+                                     const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(order, LearnOrderFromJson(BodyOrEmptyObject(request)));
+  order.object_id = Id(request);
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
+  GRASPDB_TRY(job, service.SubmitLearn(order, idempotency.key()));
+  return AnswerJob(
+      service, request, std::chrono::seconds(0), job, idempotency,
+      [&](const StoredJob& done) -> Result<HttpResponse> {
+        GraspSpaceFilter filter;
+        filter.object_id = done.result_id;
+        PageRequest all;
+        all.limit = 1000;
+        GRASPDB_TRY(page, service.store().ListGraspSpaces(filter, all));
+        return MakeListResponse(
+            page, [](const StoredGraspSpace& space) { return ToJson(space); });
+      });
+}
+
+}  // namespace
+
+void AddObjectRoutes(Router& router, Service& service) {
+  const std::string one = "/v1/objects/{id}";
+  router.Add({"GET", "/v1/objects", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return ListObjects(service, request);
+              }});
+  router.Add({"POST", "/v1/objects", BodyKind::kUpload,
+              [&service](const HttpRequest& request) {
+                return PostObject(service, request);
+              }});
+  router.Add(
+      {"GET", one, BodyKind::kNone, [&service](const HttpRequest& request) {
+         return GetObject(service, request);
+       }});
+  router.Add(
+      {"DELETE", one, BodyKind::kNone, [&service](const HttpRequest& request) {
+         return DeleteObject(service, request);
+       }});
+  router.Add({"GET", one + "/mesh", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return GetMesh(service, request);
+              }});
+  router.Add({"GET", one + "/parts", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return ListParts(service, request);
+              }});
+  router.Add({"POST", one + "/segmentation", BodyKind::kJson,
+              [&service](const HttpRequest& request) {
+                return PostSegmentation(service, request);
+              }});
+  router.Add({"POST", one + "/grasp-spaces", BodyKind::kJson,
+              [&service](const HttpRequest& request) {
+                return PostGraspSpaces(service, request);
+              }});
+}
+
+}  // namespace graspdb

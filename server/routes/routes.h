@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+
+#include "server/http/router.h"
+#include "server/jobs/service.h"
+
+/** @file
+ The operations of schema/openapi.yaml, one .cc per noun: decode the request,
+ call the service, encode the answer. The service must outlive the router. */
+
+namespace graspdb {
+
+/** How long POST /v1/grasps waits for its job unless the client says. */
+struct RouteOptions {
+  std::chrono::seconds default_wait{60};
+};
+
+void AddCategoryRoutes(Router& router, Service& service);
+void AddGraspRoutes(Router& router, Service& service,
+                    const RouteOptions& options);
+void AddGraspSpaceRoutes(Router& router, Service& service);
+void AddHandRoutes(Router& router, Service& service);
+void AddJobRoutes(Router& router, Service& service);
+void AddObjectRoutes(Router& router, Service& service);
+void AddPartRoutes(Router& router, Service& service);
+void AddSystemRoutes(Router& router, Service& service);
+void AddTransferRoutes(Router& router, Service& service);
+
+/** All of them. */
+Router MakeRouter(Service& service, const RouteOptions& options);
+
+}  // namespace graspdb

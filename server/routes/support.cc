@@ -1,0 +1,236 @@
+#include "server/routes/support.h"
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "engine/geometry/mesh_reader.h"
+#include "server/http/multipart.h"
+#include "server/ids.h"
+
+namespace graspdb {
+namespace {
+
+constexpr std::chrono::seconds kLongestWait{600};
+constexpr char kReplayed[] = "Idempotent-Replayed";
+
+/** The items between separators, without blanks around them. */
+std::vector<std::string_view> Split(std::string_view text,
+                                    std::string_view separators) {
+  std::vector<std::string_view> items;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find_first_of(separators), text.size());
+    std::string_view item = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    while (item.ends_with(' ')) item.remove_suffix(1);
+    if (!item.empty()) items.push_back(item);
+  }
+  return items;
+}
+
+/** What a second request must have in common with the first under a key. */
+std::string CalcRequestSha256(const HttpRequest& request) {
+  std::string content = request.method + '\0' + request.path;
+  for (const auto& [name, value] : request.query) {
+    content += '\0' + name + '\0' + value;
+  }
+  content += '\0' + CalcSha256(request.body);
+  for (const FormPart& file : request.files) {
+    content += '\0' + file.name + '\0' + file.filename + '\0' +
+               CalcSha256(file.content);
+  }
+  return CalcSha256(content);
+}
+
+}  // namespace
+
+HttpResponse MakeJsonResponse(int status, std::string json) {
+  HttpResponse response;
+  response.status = status;
+  response.body = std::move(json);
+  if (!response.body.ends_with('\n')) response.body += '\n';
+  return response;
+}
+
+Error MakeNotBuilt(const std::string& what) {
+  return {ErrorCode::kNotImplemented, fmt::format("{} is not built yet.", what),
+          "GET /openapi.json lists what there is."};
+}
+
+Error MakeMissingMesh() {
+  return {ErrorCode::kInvalidArgument, "There is no mesh in the request.",
+          "Send it as the body (curl --data-binary @FILE) or as the form's "
+          "part mesh (curl -F mesh=@FILE).",
+          "mesh"};
+}
+
+std::string BodyOrEmptyObject(const HttpRequest& request) {
+  return request.body.empty() ? "{}" : request.body;
+}
+
+Result<HttpResponse> DescribeObject(const Service& service, int status,
+                                    const std::string& id) {
+  GRASPDB_TRY(object, service.store().FindObject(id));
+  GRASPDB_TRY(parts, service.store().ListParts(id));
+  return MakeJsonResponse(status, ToJson(object, parts));
+}
+
+PageRequest ReadPage(QueryReader& query) {
+  PageRequest page;
+  page.limit = static_cast<int>(query.Integer("limit", 1, 1000).value_or(100));
+  page.cursor = query.Text("cursor").value_or("");
+  return page;
+}
+
+uint64_t ReadSeed(QueryReader& query) {
+  return static_cast<uint64_t>(query.Integer("seed", 0).value_or(1));
+}
+
+std::vector<std::string> ReadList(QueryReader& query, const std::string& name) {
+  std::vector<std::string> list;
+  const std::string text = query.Text(name).value_or("");
+  for (const std::string_view item : Split(text, ",")) list.emplace_back(item);
+  return list;
+}
+
+std::optional<std::string> FindFile(const HttpRequest& request,
+                                    const std::string& name) {
+  for (const FormPart& file : request.files) {
+    if (file.name == name) return file.content;
+  }
+  return std::nullopt;
+}
+
+Result<std::optional<ImportOrder>> ReadUpload(
+    const HttpRequest& request, QueryReader& query,
+    const std::vector<std::string>& others) {
+  ImportOrder order;
+  order.format = query.Choice("format", {"obj", "stl", "ply"}).value_or("");
+  order.units = query.Choice("units", {"m", "mm", "cm", "in"}).value_or("");
+  std::string type;
+  bool found = !request.body.empty();
+  if (found) {
+    order.bytes = request.body;
+    type = request.FindHeader("content-type");
+    order.file_name = FindFieldParameter(
+        request.FindHeader("content-disposition"), "filename");
+  }
+  for (const FormPart& file : request.files) {
+    if (file.name == "mesh" && !found) {
+      order.bytes = file.content;
+      order.file_name = file.filename;
+      type = file.content_type;
+      found = true;
+    } else if (file.name == "mesh" || std::find(others.begin(), others.end(),
+                                                file.name) == others.end()) {
+      return Error{ErrorCode::kInvalidArgument,
+                   fmt::format("The form has an unexpected file \"{}\".",
+                               file.name.substr(0, 64)),
+                   "Send one file, as the form's part mesh.", "mesh"};
+    }
+  }
+  if (!found) return std::optional<ImportOrder>();
+  if (order.format.empty() && ParseMeshFormat(type)) order.format = type;
+  return std::optional<ImportOrder>(std::move(order));
+}
+
+std::chrono::seconds ReadPreferredWait(const HttpRequest& request,
+                                       std::chrono::seconds otherwise) {
+  const std::string prefer(request.FindHeader("prefer"));
+  std::optional<int64_t> wait;
+  bool asynchronous = false;
+  for (const std::string_view item : Split(prefer, ",;")) {
+    if (item == "respond-async") asynchronous = true;
+    if (!item.starts_with("wait=")) continue;
+    int64_t seconds = 0;
+    const char* end = item.data() + item.size();
+    const auto [stop, error] = std::from_chars(item.data() + 5, end, seconds);
+    if (error == std::errc() && stop == end && seconds >= 0) wait = seconds;
+  }
+  if (wait) return std::min(std::chrono::seconds(*wait), kLongestWait);
+  return asynchronous ? std::chrono::seconds(0) : otherwise;
+}
+
+Result<Idempotency> Idempotency::Read(const HttpRequest& request,
+                                      Store& store) {
+  Idempotency read;
+  read.store_ = &store;
+  read.key_ = request.FindHeader("idempotency-key");
+  if (!request.headers.contains("idempotency-key")) return read;
+  if (read.key_.empty() || read.key_.size() > 255) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "Idempotency-Key takes 1 to 255 bytes.", "",
+                 "Idempotency-Key"};
+  }
+  read.request_sha256_ = CalcRequestSha256(request);
+  GRASPDB_TRY(reply, store.FindReply(read.key_));
+  if (!reply) return read;
+  if (reply->request_sha256 != read.request_sha256_) {
+    return Error{ErrorCode::kConflict,
+                 "The Idempotency-Key was used for another request.",
+                 "Use a new key for each request, the same for its retries.",
+                 "Idempotency-Key"};
+  }
+  HttpResponse earlier;
+  earlier.status = reply->status;
+  earlier.headers = reply->headers;
+  earlier.headers.emplace_back(kReplayed, "true");
+  earlier.body = reply->body;
+  read.earlier_ = std::move(earlier);
+  return read;
+}
+
+Result<void> Idempotency::Keep(const HttpResponse& response) {
+  if (key_.empty() || earlier_) return {};
+  return store_->InsertReply({key_, request_sha256_, response.status,
+                              response.headers, response.body});
+}
+
+Result<HttpResponse> AnswerOnce(
+    const HttpRequest& request, Store& store,
+    const std::function<Result<HttpResponse>()>& handler) {
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, store));
+  if (idempotency.earlier()) return *idempotency.earlier();
+  GRASPDB_TRY(response, handler());
+  GRASPDB_TRY_VOID(idempotency.Keep(response));
+  return std::move(response);
+}
+
+Result<HttpResponse> AnswerJob(
+    const Service& service, const HttpRequest& request,
+    std::chrono::seconds otherwise, const StoredJob& submitted,
+    Idempotency& idempotency,
+    const std::function<Result<HttpResponse>(const StoredJob&)>& answer) {
+  using std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kStep{200};
+  HttpResponse accepted = MakeJsonResponse(202, "");
+  accepted.headers = {{"Location", "/v1/jobs/" + submitted.id}};
+  GRASPDB_TRY_VOID(idempotency.Keep(accepted));
+  const auto deadline =
+      steady_clock::now() + ReadPreferredWait(request, otherwise);
+  StoredJob job = submitted;
+  while (!job.Finished() && steady_clock::now() < deadline &&
+         !request.stop.stop_requested()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+        deadline - steady_clock::now());
+    GRASPDB_TRY(now, service.WaitForJob(job.id, std::min(left, kStep)));
+    job = std::move(now);
+  }
+  if (job.state == JobState::kSucceeded) return answer(job);
+  if (job.state == JobState::kCancelled) {
+    return Error{ErrorCode::kCancelled,
+                 fmt::format("The job {} was cancelled.", job.id),
+                 "Send the request again."};
+  }
+  if (job.state == JobState::kFailed) {
+    return job.error.value_or(
+        Error{ErrorCode::kInternal, "A job failed without an error.", ""});
+  }
+  accepted.body = ToJson(job) + "\n";
+  return accepted;
+}
+
+}  // namespace graspdb

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/codec/record_json.h"
+#include "server/http/message.h"
+#include "server/http/query.h"
+#include "server/http/router.h"
+#include "server/jobs/service.h"
+
+/** @file
+ What several routes share. */
+
+namespace graspdb {
+
+HttpResponse MakeJsonResponse(int status, std::string json);
+
+/** 501 for what the contract announces. */
+Error MakeNotBuilt(const std::string& what);
+/** 400 for an upload without a mesh. */
+Error MakeMissingMesh();
+
+/** Whether a record could be found, without the record. */
+template <class T>
+Result<void> Check(const Result<T>& found) {
+  if (!found) return found.error();
+  return {};
+}
+
+/** The JSON body, {} when there is none. */
+std::string BodyOrEmptyObject(const HttpRequest& request);
+
+/** The object with its parts. */
+Result<HttpResponse> DescribeObject(const Service& service, int status,
+                                    const std::string& id);
+
+/** The parameters limit (1..1000, default 100) and cursor. */
+PageRequest ReadPage(QueryReader& query);
+
+/** The parameter seed, 1 when absent. */
+uint64_t ReadSeed(QueryReader& query);
+
+/** A comma-separated list without empty items; empty when absent. */
+std::vector<std::string> ReadList(QueryReader& query, const std::string& name);
+
+/** A page of records as a JSON list; encode() makes a Result<std::string>. */
+template <class T, class Encode>
+Result<HttpResponse> MakeListResponse(const Page<T>& page, Encode&& encode) {
+  std::vector<std::string> items;
+  for (const T& item : page.items) {
+    GRASPDB_TRY(text, Result<std::string>(encode(item)));
+    items.push_back(std::move(text));
+  }
+  return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
+}
+
+/** The mesh that a request uploads, raw or as the form's part "mesh", with the
+ parameters format and units; all else is the caller's.
+ Nothing when the request has no body.
+ @retval kInvalidArgument for a form with other files than "mesh" and those
+   named in `others`. */
+Result<std::optional<ImportOrder>> ReadUpload(
+    const HttpRequest& request, QueryReader& query,
+    const std::vector<std::string>& others = {});
+
+/** The content of the form's file of that name, or nothing. */
+std::optional<std::string> FindFile(const HttpRequest& request,
+                                    const std::string& name);
+
+/** How long a client wants to wait for a job: RFC 7240's Prefer, wait=N (at
+ most 600 s) and respond-async; unknown preferences are ignored. */
+std::chrono::seconds ReadPreferredWait(const HttpRequest& request,
+                                       std::chrono::seconds otherwise);
+
+/** The Idempotency-Key of a POST and what was answered under it before. */
+class Idempotency {
+ public:
+  /** @retval kInvalidArgument when the key is malformed.
+   @retval kConflict when it was used for another request. */
+  static Result<Idempotency> Read(const HttpRequest& request, Store& store);
+
+  /** Empty when the request has none. */
+  const std::string& key() const { return key_; }
+  const std::optional<HttpResponse>& earlier() const { return earlier_; }
+  /** Remembers the answer. */
+  Result<void> Keep(const HttpResponse& response);
+
+ private:
+  Store* store_{nullptr};
+  std::string key_;
+  std::string request_sha256_;
+  std::optional<HttpResponse> earlier_;
+};
+
+/** Keeps a submitted job under its Idempotency-Key, then waits for it for as
+ long as the client wants, or until the server stops.
+ @param answer  Makes the answer of a job that succeeded.
+ @returns 202 with the job and its Location when it is not done by then.
+ @retval The job's error when it failed; kCancelled. */
+Result<HttpResponse> AnswerJob(
+    const Service& service, const HttpRequest& request,
+    std::chrono::seconds otherwise, const StoredJob& submitted,
+    Idempotency& idempotency,
+    const std::function<Result<HttpResponse>(const StoredJob&)>& answer);
+
+/** Runs `handler`, unless its answer to the same request under the same
+ Idempotency-Key is known: then that. Answers of failures are not kept. */
+Result<HttpResponse> AnswerOnce(
+    const HttpRequest& request, Store& store,
+    const std::function<Result<HttpResponse>()>& handler);
+
+/** An execution that ends when the server stops. */
+class RequestContext {
+ public:
+  explicit RequestContext(const HttpRequest& request)
+      : cancel_(request.stop, Cancel{&context_}) {}
+  ExecutionContext& context() { return context_; }
+
+ private:
+  struct Cancel {
+    ExecutionContext* context;
+    void operator()() const { context->Cancel(); }
+  };
+  ExecutionContext context_;
+  std::stop_callback<Cancel> cancel_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,95 @@
+#include <string>
+
+#include <fmt/format.h>
+
+#include "engine/grasp_engine.h"
+#include "server/codec/parameters_json.h"
+#include "server/codec/record_json.h"
+#include "server/routes/openapi_document.h"
+#include "server/routes/routes.h"
+#include "server/routes/support.h"
+#include "server/ui/landing_page.h"
+
+namespace graspdb {
+namespace {
+
+HttpHandler Announce(const char* what) {
+  return [what](const HttpRequest&) -> Result<HttpResponse> {
+    return MakeNotBuilt(what);
+  };
+}
+
+/** Ready when the database answers and requests are taken. */
+Result<HttpResponse> GetReady(const Service& service,
+                              const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  if (request.stop.stop_requested()) {
+    return Error{ErrorCode::kDeadlineExceeded, "The server is shutting down.",
+                 "Ask another server."};
+  }
+  GRASPDB_TRY(counts, service.store().Count());
+  return MakeJsonResponse(
+      200, fmt::format(R"({{"status":"ready","counts":{}}})", ToJson(counts)));
+}
+
+Result<HttpResponse> GetHealth(const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  return MakeJsonResponse(
+      200, fmt::format(R"({{"status":"ok","version":"{}"}})", EngineVersion()));
+}
+
+Result<HttpResponse> GetOpenApi(const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  return MakeJsonResponse(200, std::string(kOpenApiDocument));
+}
+
+Result<HttpResponse> GetParameters(const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  return MakeJsonResponse(200, DescribeParameters());
+}
+
+}  // namespace
+
+void AddSystemRoutes(Router& router, Service& service) {
+  router.Add({"GET", "/healthz", BodyKind::kNone, GetHealth});
+  router.Add({"GET", "/readyz", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return GetReady(service, request);
+              }});
+  router.Add({"GET", "/openapi.json", BodyKind::kNone, GetOpenApi});
+  router.Add({"GET", "/v1/parameters", BodyKind::kNone, GetParameters});
+  router.Add(
+      {"POST", "/v1/search", BodyKind::kUpload, Announce("Search by shape")});
+  router.Add({"GET", "/v1/backups", BodyKind::kNone, Announce("A backup")});
+  router.Add({"POST", "/v1/backups", BodyKind::kJson, Announce("A backup")});
+}
+
+Router MakeRouter(Service& service, const RouteOptions& options) {
+  Router router;
+  AddSystemRoutes(router, service);
+  AddCategoryRoutes(router, service);
+  AddObjectRoutes(router, service);
+  AddPartRoutes(router, service);
+  AddGraspSpaceRoutes(router, service);
+  AddGraspRoutes(router, service, options);
+  AddTransferRoutes(router, service);
+  AddHandRoutes(router, service);
+  AddJobRoutes(router, service);
+  std::vector<Operation> operations;
+  for (const Route& route : router.routes()) {
+    operations.push_back({route.method, route.pattern});
+  }
+  router.Add({"GET", "/", BodyKind::kNone,
+              [page = MakeLandingPage(operations)](const HttpRequest&) {
+                HttpResponse response;
+                response.content_type = "text/html; charset=utf-8";
+                response.headers.emplace_back(
+                    "Content-Security-Policy",
+                    "default-src 'none'; style-src 'unsafe-inline'");
+                response.body = page;
+                return response;
+              }});
+  return router;
+}
+
+}  // namespace graspdb

@@ -1,0 +1,178 @@
+#include "server/ids.h"
+#include "server/store/store.h"
+#include "server/store/store_impl.h"
+
+namespace graspdb {
+namespace {
+
+using store::CheckPage;
+using store::MakePage;
+using store::Throw;
+using store::Unwrap;
+
+constexpr char kJobColumns[] =
+    "SELECT id, kind, state, progress, stage, request, result_id, error_code,"
+    " error_message, error_hint, error_field, created_at, started_at,"
+    " finished_at FROM jobs ";
+
+StoredJob MakeJob(const Statement& row) {
+  StoredJob job;
+  job.id = row.Text(0);
+  job.kind = Unwrap(ParseJobKind(row.Text(1)));
+  job.state = Unwrap(ParseJobState(row.Text(2)));
+  job.progress = row.Double(3);
+  job.stage = row.Text(4);
+  job.request = row.Text(5);
+  job.result_id = row.Text(6);
+  if (!row.IsNull(7)) {
+    job.error = Error{Unwrap(ParseErrorCode(row.Text(7))), row.Text(8),
+                      row.Text(9), row.Text(10)};
+  }
+  job.created_at = row.Text(11);
+  job.started_at = row.Text(12);
+  job.finished_at = row.Text(13);
+  return job;
+}
+
+StoredJob ReadJob(Database& database, const std::string& id) {
+  Statement row = database.Prepare(std::string(kJobColumns) + "WHERE id = ?");
+  if (!row.Bind(id).Step()) {
+    Throw(ErrorCode::kNotFound, "There is no job '" + id + "'.",
+          "GET /v1/jobs lists them", "id");
+  }
+  return MakeJob(row);
+}
+
+std::optional<StoredJob> FindJobByKey(Database& database,
+                                      const std::string& key) {
+  if (key.empty()) return std::nullopt;
+  Statement row =
+      database.Prepare(std::string(kJobColumns) + "WHERE idempotency_key = ?");
+  if (!row.Bind(key).Step()) return std::nullopt;
+  return MakeJob(row);
+}
+
+// The oldest queued job of one of the kinds; empty when there is none.
+std::string FindQueued(Database& database, const std::vector<JobKind>& kinds) {
+  std::string oldest;
+  for (const JobKind kind : kinds) {
+    Statement row = database.Prepare(
+        "SELECT id FROM jobs WHERE state = 'queued' AND kind = ?"
+        " ORDER BY id LIMIT 1");
+    if (row.Bind(ToString(kind)).Step() &&
+        (oldest.empty() || row.Text(0) < oldest)) {
+      oldest = row.Text(0);
+    }
+  }
+  return oldest;
+}
+
+}  // namespace
+
+Result<StoredJob> Store::InsertJob(JobKind kind, const std::string& request,
+                                   const std::string& payload,
+                                   const std::string& idempotency_key) {
+  return impl_->Write([&](Database& database) {
+    if (auto known = FindJobByKey(database, idempotency_key)) {
+      if (known->kind != kind || known->request != request) {
+        Throw(ErrorCode::kConflict,
+              "The Idempotency-Key was used for another request.",
+              "use a new key for a new request", "Idempotency-Key");
+      }
+      return *known;
+    }
+    const std::string id = MakeUuid();
+    database
+        .Prepare(
+            "INSERT INTO jobs (id, kind, state, request, idempotency_key,"
+            " progress, stage, created_at, payload)"
+            " VALUES (?, ?, 'queued', ?, ?, 0, '', ?, ?)")
+        .Bind(id, ToString(kind), request)
+        .BindTextOrNull(idempotency_key)
+        .Bind(FormatNow())
+        .BindBlob(payload)
+        .Run();
+    return ReadJob(database, id);
+  });
+}
+
+Result<StoredJob> Store::FindJob(const std::string& id) const {
+  return impl_->Read([&](Database& database) { return ReadJob(database, id); });
+}
+
+Result<Page<StoredJob>> Store::ListJobs(std::optional<JobState> state,
+                                        const PageRequest& page) const {
+  return impl_->Read([&](Database& database) {
+    CheckPage(page);
+    std::string where = "WHERE (?1 = '' OR id < ?1)";
+    if (state) where += " AND state = ?3";
+    Statement rows =
+        database.Prepare(kJobColumns + where + " ORDER BY id DESC LIMIT ?2");
+    rows.Bind(page.cursor, page.limit + 1);
+    if (state) rows.Bind(ToString(*state));
+    std::vector<StoredJob> jobs;
+    while (rows.Step()) jobs.push_back(MakeJob(rows));
+    return MakePage(std::move(jobs), page.limit,
+                    [](const StoredJob& last) { return last.id; });
+  });
+}
+
+Result<std::string> Store::ReadJobPayload(const std::string& id) const {
+  return impl_->Read([&](Database& database) {
+    Statement row = database.Prepare("SELECT payload FROM jobs WHERE id = ?");
+    row.Bind(id).Step();
+    return row.Blob(0);
+  });
+}
+
+Result<std::optional<StoredJob>> Store::ClaimJob(
+    const std::vector<JobKind>& kinds) {
+  // Most calls find nothing and need no write.
+  const Result<std::string> queued = impl_->Read(
+      [&](Database& database) { return FindQueued(database, kinds); });
+  if (!queued) return queued.error();
+  if (queued->empty()) return std::optional<StoredJob>();
+  return impl_->Write([&](Database& database) -> std::optional<StoredJob> {
+    const std::string id = FindQueued(database, kinds);
+    if (id.empty()) return std::nullopt;
+    database
+        .Prepare(
+            "UPDATE jobs SET state = 'running', started_at = ?, progress = 0"
+            " WHERE id = ?")
+        .Bind(FormatNow(), id)
+        .Run();
+    return ReadJob(database, id);
+  });
+}
+
+Result<StoredJob> Store::FinishJob(const StoredJob& job) {
+  GRASPDB_EXPECTS(job.Finished());
+  return impl_->Write([&](Database& database) {
+    Statement update = database.Prepare(
+        "UPDATE jobs SET state = ?, progress = ?, stage = ?, result_id = ?,"
+        " error_code = ?, error_message = ?, error_hint = ?, error_field = ?,"
+        " finished_at = ?, payload = NULL"
+        " WHERE id = ? AND state IN ('queued', 'running')");
+    update.Bind(ToString(job.state), job.progress, job.stage)
+        .BindTextOrNull(job.result_id);
+    if (job.error) {
+      update.Bind(ToString(job.error->code), job.error->message,
+                  job.error->hint, job.error->field);
+    } else {
+      for (int i = 0; i < 4; ++i) update.BindTextOrNull("");
+    }
+    update.Bind(FormatNow(), job.id).Run();
+    return ReadJob(database, job.id);
+  });
+}
+
+Result<int> Store::RequeueRunningJobs() {
+  return impl_->Write([&](Database& database) {
+    database.Execute(
+        "UPDATE jobs SET state = 'queued', progress = 0, stage = '',"
+        " started_at = NULL WHERE state = 'running'");
+    return static_cast<int>(database.Changes());
+  });
+}
+
+}  // namespace graspdb

@@ -1,0 +1,206 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/records.h"
+
+namespace graspdb {
+
+/** Which stored grasps are wanted. Empty fields do not filter. */
+struct GraspQuery {
+  enum class Sort {
+    kEpsilon,  ///< Highest eps first.
+    kHybrid,   ///< Lowest measure of Eq. (1) first.
+    kRobust,   ///< Highest share first, unknown last.
+    kNewest,   ///< Latest stored first.
+  };
+  std::string category;
+  std::vector<std::string> part_labels;  ///< Any of these.
+  std::string hand;
+  std::string object_id;
+  std::string grasp_space_id;
+  std::string transfer_id;
+  std::optional<GraspStage> stage;
+  std::optional<double> min_epsilon;
+  std::optional<bool> verified;  ///< Whether a physical verdict is known.
+  Sort sort{Sort::kEpsilon};
+  PageRequest page;
+};
+
+struct ObjectFilter {
+  std::string category;
+  std::optional<ObjectRole> role;
+};
+
+struct GraspSpaceFilter {
+  std::string category;
+  std::string part_label;
+  std::string hand;
+  std::string object_id;
+};
+
+/** What a new object is stored with. `record.id` and `record.created_at` are
+ given by the store. Parts and their solids run in parallel; both are empty for
+ an object without parts. */
+struct NewObject {
+  StoredObject record;
+  std::string bytes;  ///< The file as uploaded.
+  ObjectMeshes meshes;
+  std::vector<StoredPart> parts;  ///< `id` and `object_id` are given.
+  std::vector<Part> solids;
+};
+
+/** The database: one SQLite file, see schema/README.md. What a call
+ acknowledges has reached the disk. Every function may be called from any
+ thread; writes follow one another, reads run beside them on a consistent
+ snapshot.
+ Every function may fail with kStorage (disk full, locked, corrupt, closed).
+ Find… answers kNotFound, with what is known in the hint. */
+class Store {
+ public:
+  enum class OpenMode { kOpenOrCreate, kMustExist };
+
+  /** Opens a database file, creating or upgrading it where needed. A file that
+   is not ours, newer than this program or corrupt is refused with kStorage and
+   is not written to.
+   @param path  A file in an existing folder; ":memory:" is not accepted. */
+  static Result<std::unique_ptr<Store>> Open(
+      const std::string& path, OpenMode mode = OpenMode::kOpenOrCreate);
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+
+  const std::string& path() const;
+  /** The number of the last migration applied. */
+  int schema_version() const;
+
+  // ---- Categories -----------------------------------------------------------
+  /** @retval kConflict when the name is taken. */
+  Result<StoredCategory> InsertCategory(const StoredCategory& category);
+  /** Replaces title, parts' tasks, adjacency and segmentation settings.
+   @retval kNotFound; kConflict when labels change although objects use them. */
+  Result<StoredCategory> UpdateCategory(const StoredCategory& category);
+  Result<StoredCategory> FindCategory(const std::string& name) const;
+  Result<Page<StoredCategory>> ListCategories(const PageRequest& page) const;
+  /** @retval kConflict when it has objects and cascade is false. */
+  Result<void> DeleteCategory(const std::string& name, bool cascade);
+
+  // ---- Objects and parts ----------------------------------------------------
+  /** Stores all or nothing. The same bytes, units, role and category a second
+   time answer with the object already stored and store nothing. */
+  Result<StoredObject> InsertObject(const NewObject& object);
+  Result<StoredObject> FindObject(const std::string& id) const;
+  Result<std::optional<StoredObject>> FindObjectByContent(
+      const std::string& sha256, const std::string& units, ObjectRole role,
+      const std::string& category) const;
+  /** In the order of creation. */
+  Result<Page<StoredObject>> ListObjects(const ObjectFilter& filter,
+                                         const PageRequest& page) const;
+  /** The file exactly as uploaded. */
+  Result<std::string> ReadObjectBytes(const std::string& id) const;
+  Result<ObjectMeshes> ReadObjectMeshes(const std::string& id) const;
+  /** Replaces an object's category, labels and parts.
+   @retval kConflict when grasps depend on the parts and cascade is false; the
+     grasps, grasp spaces and transfers go with cascade. */
+  Result<StoredObject> ReplaceParts(const std::string& object_id,
+                                    const std::string& category,
+                                    const StoredSegmentation& segmentation,
+                                    const ObjectMeshes& labelled,
+                                    const std::vector<StoredPart>& parts,
+                                    const std::vector<Part>& solids,
+                                    bool cascade);
+  /** A novel object goes with its grasps and transfers.
+   @retval kConflict for an example that grasps or transfers depend on, naming
+     them, unless cascade. */
+  Result<void> DeleteObject(const std::string& id, bool cascade);
+
+  /** In label order. */
+  Result<std::vector<StoredPart>> ListParts(const std::string& object_id) const;
+  Result<StoredPart> FindPart(const std::string& id) const;
+  /** The solids of all parts of an object, in the order of ListParts(); their
+   object_faces are faces of the work mesh. */
+  Result<std::vector<Part>> ReadSolids(const std::string& object_id) const;
+
+  // ---- Hands ----------------------------------------------------------------
+  /** The same content a second time changes nothing.
+   @retval kConflict when the name is taken by another hand. */
+  Result<StoredHand> InsertHand(const StoredHand& hand);
+  /** With its meshes. */
+  Result<StoredHand> FindHand(const std::string& name) const;
+  /** Without their meshes, by name. */
+  Result<Page<StoredHand>> ListHands(const PageRequest& page) const;
+
+  // ---- Grasp spaces and grasps ----------------------------------------------
+  /** Stores the space and its grasps (ids are given). A space with the same
+   part, hand, parameters and seed is kept and answered instead. */
+  Result<StoredGraspSpace> InsertGraspSpace(const StoredGraspSpace& record,
+                                            const GraspSpace& space);
+  Result<StoredGraspSpace> FindGraspSpace(const std::string& id) const;
+  /** What was learned before for the same question, if anything. */
+  Result<std::optional<StoredGraspSpace>> FindLearned(
+      const std::string& part_id, const std::string& hand,
+      const std::string& parameters_hash, uint64_t seed) const;
+  /** In the order of creation. */
+  Result<Page<StoredGraspSpace>> ListGraspSpaces(const GraspSpaceFilter& filter,
+                                                 const PageRequest& page) const;
+  /** The learned values, grasps in the order in which they were learned. */
+  Result<GraspSpace> ReadGraspSpace(const std::string& id) const;
+  /** @retval kConflict when transfers used its grasps and cascade is false. */
+  Result<void> DeleteGraspSpace(const std::string& id, bool cascade);
+
+  Result<StoredGrasp> FindGrasp(const std::string& id) const;
+  /** @retval kInvalidArgument for a cursor of another query. */
+  Result<Page<StoredGrasp>> QueryGrasps(const GraspQuery& query) const;
+
+  // ---- Transfers ------------------------------------------------------------
+  /** Stores a transfer with its grasps (their ids are used as given). One with
+   the same id is kept and answered instead. */
+  Result<StoredTransfer> InsertTransfer(const StoredTransfer& transfer,
+                                        const std::vector<StoredGrasp>& grasps);
+  Result<StoredTransfer> FindTransfer(const std::string& id) const;
+
+  // ---- Jobs -----------------------------------------------------------------
+  /** @param idempotency_key  When not empty: a job with the same key is
+   answered instead of a new one.
+   @param payload  The bytes of a mesh; kept until the job ends. */
+  Result<StoredJob> InsertJob(JobKind kind, const std::string& request,
+                              const std::string& payload,
+                              const std::string& idempotency_key);
+  Result<StoredJob> FindJob(const std::string& id) const;
+  /** Newest first. */
+  Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
+                                   const PageRequest& page) const;
+  Result<std::string> ReadJobPayload(const std::string& id) const;
+  /** The oldest queued job of one of the kinds becomes running; none when there
+   is none. */
+  Result<std::optional<StoredJob>> ClaimJob(const std::vector<JobKind>& kinds);
+  /** Writes how a job ended: state, result or error, times. A job that has
+   ended already is left alone. */
+  Result<StoredJob> FinishJob(const StoredJob& job);
+  /** Jobs that a dead process left running are queued again.
+   @returns how many. */
+  Result<int> RequeueRunningJobs();
+
+  // ---- Idempotency-Key ------------------------------------------------------
+  Result<std::optional<StoredReply>> FindReply(const std::string& key) const;
+  /** The first reply under a key stays. Replies older than a day go. */
+  Result<void> InsertReply(const StoredReply& reply);
+
+  // ---- Health ---------------------------------------------------------------
+  Result<StoreCounts> Count() const;
+  /** Reads every page, key and blob. */
+  Result<CheckReport> Check() const;
+
+ private:
+  struct Impl;
+  explicit Store(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace graspdb

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/store/database.h"
+#include "server/store/store.h"
+
+/** @file
+ What the .cc files of Store share. Functions that take a Database run inside
+ the caller's transaction and throw StorageFailure. */
+
+namespace graspdb {
+
+/** One connection that writes, as many that read as there are readers. */
+struct Store::Impl {
+  std::string path;
+  int schema_version{0};
+  std::mutex write_mutex;
+  std::unique_ptr<Database> writer;
+  std::mutex readers_mutex;
+  std::vector<std::unique_ptr<Database>> idle_readers;
+
+  /** Runs `operation(Database&)` on one snapshot. */
+  template <class F>
+  auto Read(F&& operation) {
+    return RunStorage([&] {
+      const std::unique_ptr<Database, std::function<void(Database*)>> reader(
+          TakeReader().release(),
+          [this](Database* database) { GiveBack(database); });
+      const Transaction transaction(*reader, Transaction::Kind::kRead);
+      return operation(*reader);
+    });
+  }
+
+  /** Runs `operation(Database&)` in one transaction and commits it. */
+  template <class F>
+  auto Write(F&& operation) {
+    return RunStorage([&] {
+      const std::lock_guard lock(write_mutex);
+      Transaction transaction(*writer);
+      if constexpr (std::is_void_v<decltype(operation(*writer))>) {
+        operation(*writer);
+        transaction.Commit();
+      } else {
+        auto result = operation(*writer);
+        transaction.Commit();
+        return result;
+      }
+    });
+  }
+
+ private:
+  std::unique_ptr<Database> TakeReader();
+  void GiveBack(Database* database);
+};
+
+namespace store {
+
+[[noreturn]] void Throw(ErrorCode code, const std::string& message,
+                        const std::string& hint = "",
+                        const std::string& field = "");
+
+/** The value of a Result, or its error thrown. */
+template <class T>
+T Unwrap(Result<T> result) {
+  if (!result) throw StorageFailure(result.error());
+  return std::move(*result);
+}
+
+/** @throws kInvalidArgument unless the limit lies in 1..1000. */
+void CheckPage(const PageRequest& page);
+
+/** Cuts a list that was read with one item more than asked for.
+ @param cursor_of  Gives the cursor that continues after an item. */
+template <class T, class F>
+Page<T> MakePage(std::vector<T> items, int limit, F&& cursor_of) {
+  Page<T> page;
+  if (std::ssize(items) > limit) {
+    items.resize(static_cast<size_t>(limit));
+    page.next_cursor = cursor_of(items.back());
+  }
+  page.items = std::move(items);
+  return page;
+}
+
+StoredObject ReadObject(Database& database, const std::string& id);
+std::vector<StoredPart> ReadParts(Database& database,
+                                  const std::string& object_id);
+/** Adds a parameter set, once. */
+void InsertParameterSet(Database& database, const std::string& hash,
+                        const std::string& json);
+
+// What `graspdb check` looks at; each adds to the report.
+void CheckObjects(Database& database, CheckReport& report);
+void CheckGrasps(Database& database, CheckReport& report);
+
+}  // namespace store
+}  // namespace graspdb

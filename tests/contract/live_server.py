@@ -1,0 +1,49 @@
+"""A real graspdb on a database of its own, in a temporary folder."""
+
+import os
+import signal
+import subprocess
+import time
+
+
+class LiveServer:
+    """Runs `graspdb serve` and ends it as an operator would."""
+
+    def __init__(self, binary, database, folder, *flags):
+        self.log_path = folder / "server.log"
+        self.port_file = folder / "port"
+        self.port_file.unlink(missing_ok=True)
+        with open(self.log_path, "ab") as log:
+            self.process = subprocess.Popen(
+                [binary, "serve", "--db", str(database), "--port", "0",
+                 "--port-file", str(self.port_file), *flags],
+                stdout=subprocess.DEVNULL, stderr=log,
+                env={**os.environ, "LC_ALL": "C"})
+        self.port = self._wait_for_port()
+        self.url = f"http://127.0.0.1:{self.port}"
+
+    def _wait_for_port(self):
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            if self.process.poll() is not None:
+                break
+            if self.port_file.exists():
+                return int(self.port_file.read_text())
+            time.sleep(0.02)
+        raise RuntimeError(f"graspdb did not start:\n{self.log()}")
+
+    def log(self):
+        return self.log_path.read_text(errors="replace")
+
+    def alive(self):
+        return self.process.poll() is None
+
+    def stop(self):
+        """SIGTERM; answers the exit status."""
+        if self.alive():
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            return self.process.wait(timeout=60)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            raise

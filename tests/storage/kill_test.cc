@@ -1,0 +1,117 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "server/store/store.h"
+#include "tests/support/stored_records.h"
+#include "tests/support/temp_folder.h"
+
+namespace graspdb {
+namespace {
+
+using ::testing::IsEmpty;
+
+// What a child process has acknowledged: the id of an object, or that of the
+// grasp space that was learned from it.
+struct Acknowledgement {
+  char kind;  // 'o' or 's'.
+  char id[36];
+};
+
+void Acknowledge(int pipe, char kind, const std::string& id) {
+  Acknowledgement message{kind, {}};
+  id.copy(message.id, sizeof(message.id));
+  // Shorter than PIPE_BUF, hence whole or not at all.
+  if (write(pipe, &message, sizeof(message)) != sizeof(message)) _exit(3);
+}
+
+// Imports and learns for ever, telling what is done.
+[[noreturn]] void WorkUntilKilled(const std::string& path, int round,
+                                  int pipe) {
+  auto opened = Store::Open(path);
+  if (!opened) _exit(4);
+  Store& store = **opened;
+  for (int i = 0;; ++i) {
+    const std::string bytes = std::to_string(round) + "/" + std::to_string(i);
+    const auto object =
+        store.InsertObject(MakeNewObject(bytes, ObjectRole::kExample));
+    if (!object) _exit(5);
+    Acknowledge(pipe, 'o', object->id);
+    const auto parts = store.ListParts(object->id);
+    const auto space = store.InsertGraspSpace(MakeSpaceRecord((*parts)[0], 1),
+                                              MakeGraspSpace(1, 5));
+    if (!space) _exit(6);
+    Acknowledge(pipe, 's', space->id);
+  }
+}
+
+TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
+  const TempFolder folder;
+  const std::string path = folder.File("a.db");
+  {
+    auto store = Store::Open(path);
+    ASSERT_TRUE((*store)->InsertCategory(MakeMugCategory()));
+    ASSERT_TRUE((*store)->InsertHand(MakeClaw()));
+  }
+  Random random(1);
+  int acknowledged = 0;
+  for (int round = 0; round < 25; ++round) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      close(ends[0]);
+      WorkUntilKilled(path, round, ends[1]);
+    }
+    close(ends[1]);
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(20 + random.NextIndex(120)));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
+
+    auto store = Store::Open(path);
+    ASSERT_TRUE(store) << store.error().message;
+    Acknowledgement message{};
+    while (read(ends[0], &message, sizeof(message)) == sizeof(message)) {
+      ++acknowledged;
+      const std::string id(message.id, strnlen(message.id, 36));
+      if (message.kind == 'o') {
+        EXPECT_TRUE((*store)->ReadObjectMeshes(id));
+        EXPECT_EQ((*store)->ListParts(id).value().size(), 2u);
+      } else {
+        EXPECT_EQ((*store)->ReadGraspSpace(id).value().grasps.size(), 5u);
+      }
+    }
+    close(ends[0]);
+    EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
+  }
+  EXPECT_GT(acknowledged, 25);
+}
+
+// At any moment the file is either absent or whole.
+TEST(KilledProcess, LeavesNoHalfMadeDatabase) {
+  const TempFolder folder;
+  Random random(2);
+  for (int round = 0; round < 25; ++round) {
+    const std::string path = folder.File(std::to_string(round) + ".db");
+    const pid_t child = fork();
+    if (child == 0) {
+      const bool opened = Store::Open(path).has_value();
+      _exit(opened ? 0 : 1);
+    }
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(random.NextIndex(30'000)));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_TRUE(Store::Open(path)) << "round " << round;
+  }
+}
+
+}  // namespace
+}  // namespace graspdb

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/geometry/triangle_mesh.h"
+#include "engine/hand/hand_model.h"
+#include "engine/segmentation/part.h"
+
+namespace graspdb::workshop {
+
+/** A box centred at the origin, edges of `size` metres cut into `cells` squares
+ of two triangles each. */
+TriangleMesh MakeBox(const Eigen::Vector3d& size, int cells = 1);
+
+/** A cylinder about z, centred at the origin. */
+TriangleMesh MakeCylinder(double radius, double height, int sides = 64,
+                          int rings = 16);
+
+/** A sphere about the origin. */
+TriangleMesh MakeSphere(double radius, int rings = 32);
+
+/** Reads `v` and triangular `f` lines, nothing else. @pre The file exists. */
+TriangleMesh LoadObj(const std::string& path);
+
+/** A mesh of data/mug and its labels. */
+LabelledMesh LoadMug(const std::string& name);
+
+/** body and handle, which touch. */
+PartVocabulary MakeMugVocabulary();
+
+/** The Barrett hand of data/hands. */
+std::shared_ptr<const HandModel> LoadBarrettHand();
+
+/** A parallel gripper: two jaws that slide towards each other along x, 80 mm
+ apart when open, approaching along z. */
+std::shared_ptr<const HandModel> MakeTwoJawGripper();
+
+}  // namespace graspdb::workshop

@@ -1,0 +1,80 @@
+#include "engine/hand/finger_closing.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+int FindJoint(const HandModel& hand, const std::string& name) {
+  for (int j = 0; j < hand.num_joints(); ++j) {
+    if (hand.joints()[j].name == name) return j;
+  }
+  return -1;
+}
+
+TEST(CloseFingers, InTheAirEndsAtTheLimits) {
+  const HandShape hand(workshop::MakeTwoJawGripper());
+  const Solid far(
+      CalcTransformed(workshop::MakeBox({0.02, 0.02, 0.02}),
+                      {Eigen::Matrix3d::Identity(), Eigen::Vector3d(1, 0, 0)}));
+  const Eigen::VectorXd q =
+      CloseFingers(hand, {}, Eigen::Vector2d::Zero(), far);
+  // The jaws meet each other in the middle, each after 40 mm.
+  EXPECT_NEAR(q[0], 0.04, 1e-4);
+  EXPECT_NEAR(q[1], 0.04, 1e-4);
+}
+
+TEST(CloseFingers, DistalLinkGoesOnAfterTheInnerOneIsBlocked) {
+  const HandShape hand(workshop::LoadBarrettHand());
+  // A low block between the fingers meets the med links; the distal links pass
+  // over it.
+  const Solid block(CalcTransformed(
+      workshop::MakeBox({0.08, 0.074, 0.03}),
+      {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 0, 0.1)}));
+  const Eigen::VectorXd q = CloseFingers(
+      hand, {}, Eigen::VectorXd::Zero(hand.model().num_joints()), block);
+  bool broke_away = false;
+  for (const char* finger : {"bh_j1", "bh_j2", "bh_j3"}) {
+    const double j2 =
+        q[FindJoint(hand.model(), std::string(finger) + "2_joint")];
+    const double j3 =
+        q[FindJoint(hand.model(), std::string(finger) + "3_joint")];
+    EXPECT_GE(j3, j2 / 3 - 1e-9);
+    broke_away = broke_away || j3 > j2 / 3 + 0.05;
+  }
+  EXPECT_TRUE(broke_away);
+}
+
+TEST(CloseFingers, AlwaysEndsFreeOfCollision) {
+  const HandShape hand(workshop::LoadBarrettHand());
+  const Solid box(workshop::MakeBox({0.05, 0.05, 0.1}, 6));
+  Random random(31);
+  int closed = 0;
+  for (int i = 0; i < 400; ++i) {
+    const RigidTransform X_OH{
+        random.NextRotation(),
+        random.NextUniform(0.05, 0.2) * random.NextUnitVector()};
+    Eigen::VectorXd motors(4);
+    motors << random.NextUniform(0, M_PI), 0, 0, 0;
+    const Eigen::VectorXd q_start = hand.model().CalcCoupledJoints(motors);
+    const auto X_HL = CalcLinkPoses(hand.model(), q_start);
+    if (FindCollidingLink(hand, X_OH, X_HL, box) >= 0 ||
+        FindSelfCollision(hand, X_HL)) {
+      continue;
+    }
+    const Eigen::VectorXd q = CloseFingers(hand, X_OH, q_start, box);
+    const auto X_HL_closed = CalcLinkPoses(hand.model(), q);
+    EXPECT_EQ(FindCollidingLink(hand, X_OH, X_HL_closed, box), -1) << i;
+    EXPECT_FALSE(FindSelfCollision(hand, X_HL_closed)) << i;
+    ++closed;
+  }
+  EXPECT_GT(closed, 50);
+}
+
+}  // namespace
+}  // namespace graspdb

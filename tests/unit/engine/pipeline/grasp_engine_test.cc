@@ -1,0 +1,126 @@
+#include "engine/grasp_engine.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/hand/hand_shape.h"
+#include "engine/planning/grasp_evaluator.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+// The whole method with another hand: a two-jaw gripper learns on a box and
+// transfers to a slightly larger one.
+class GripperPipeline : public ::testing::Test {
+ protected:
+  static constexpr int kSources = 12;
+
+  static Part MakePart(const TriangleMesh& mesh) {
+    Part part;
+    part.solid_O = mesh;
+    part.num_surface_faces = mesh.num_triangles();
+    return part;
+  }
+
+  static LabelledMesh Label(const TriangleMesh& mesh) {
+    return {mesh, std::vector<int>(mesh.num_triangles(), 0)};
+  }
+
+  static Parameters MakeSmallParameters() {
+    Parameters p;
+    p.active_learning.seed_samples = 300;
+    p.active_learning.rounds = 1;
+    p.active_learning.queries_per_round = 100;
+    p.active_learning.test_samples = 50;
+    p.swarm.particles = 40;
+    p.swarm.iterations = 16;
+    p.mapping.samples = 400;
+    p.replan.iterations = 30;
+    return p;
+  }
+
+  GraspSpace LearnBox(int threads) const {
+    ExecutionContext context;
+    return Learn({gripper_, MakePart(box_E_), box_E_, MakeSmallParameters(), 1,
+                  threads},
+                 context)
+        .value();
+  }
+
+  TransferResult TransferBox(const GraspSpace& space, int threads) const {
+    TransferRequest request;
+    request.hand = gripper_;
+    request.example = Label(box_E_);
+    request.novel = Label(box_N_);
+    request.example_parts = {MakePart(box_E_)};
+    request.novel_parts = {MakePart(box_N_)};
+    request.scale = 1.05;
+    request.grasp_spaces = {std::make_shared<const GraspSpace>(space)};
+    request.sources_per_part = kSources;
+    request.parameters = MakeSmallParameters();
+    request.threads = threads;
+    ExecutionContext context;
+    return Transfer(request, context).value();
+  }
+
+  const std::shared_ptr<const HandModel> gripper_ =
+      workshop::MakeTwoJawGripper();
+  const TriangleMesh box_E_ = workshop::MakeBox({0.04, 0.03, 0.08}, 8);
+  const TriangleMesh box_N_ = workshop::MakeBox({0.042, 0.033, 0.084}, 8);
+};
+
+TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
+  const GraspSpace space = LearnBox(2);
+  ASSERT_GT(space.grasps.size(), 10u);
+  ASSERT_EQ(space.curve.size(), 2u);
+  const TransferResult result = TransferBox(space, 2);
+  EXPECT_TRUE(result.complete);
+  const HandShape hand(gripper_);
+  const Solid novel(box_N_);
+  int assembled = 0;
+  for (const TransferRecord& record : result.records) {
+    if (!record.assembled) {
+      EXPECT_NE(record.assembly, TransferOutcome::kSucceeded);
+      continue;
+    }
+    ++assembled;
+    EXPECT_LT(record.penetration, 0.001);
+    EXPECT_GE(record.assembled->quality.epsilon, 1e-3);
+    EXPECT_EQ(
+        FindCollidingLink(
+            hand, record.assembled->configuration.X_OH,
+            CalcLinkPoses(*gripper_, record.assembled->configuration.q), novel),
+        -1);
+    for (const Contact& contact : record.assembled->contacts) {
+      EXPECT_LE(contact.gap, 0.0005);
+    }
+  }
+  EXPECT_GE(assembled, static_cast<int>(result.records.size()) / 2);
+}
+
+TEST_F(GripperPipeline, OneAndTwoThreadsGiveTheSameBytes) {
+  const GraspSpace one = LearnBox(1);
+  const GraspSpace two = LearnBox(2);
+  EXPECT_EQ(one, two);
+  const TransferResult a = TransferBox(one, 1);
+  const TransferResult b = TransferBox(two, 2);
+  ASSERT_EQ(a.records.size(), b.records.size());
+  for (size_t i = 0; i < a.records.size(); ++i) {
+    EXPECT_EQ(a.records[i].assembled, b.records[i].assembled);
+    EXPECT_EQ(a.records[i].robust, b.records[i].robust);
+  }
+}
+
+TEST_F(GripperPipeline, CancellingEndsLearning) {
+  ExecutionContext context;
+  context.Cancel();
+  EXPECT_EQ(
+      Learn({gripper_, MakePart(box_E_), box_E_, MakeSmallParameters(), 1, 1},
+            context)
+          .error()
+          .code,
+      ErrorCode::kCancelled);
+}
+
+}  // namespace
+}  // namespace graspdb

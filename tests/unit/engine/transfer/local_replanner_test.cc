@@ -1,0 +1,112 @@
+#include "engine/transfer/local_replanner.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+// The gripper on a 40 mm box, as a source grasp for other boxes.
+class GripperTask : public ::testing::Test {
+ protected:
+  GripperTask() {
+    task_.X_NH = {
+        Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix(),
+        {0, 0, 0.07}};
+    task_.q_pregrasp = Eigen::Vector2d::Zero();
+    task_.q = Eigen::Vector2d(0.02, 0.02);
+    // Jaw 1 is on the left in H and, H being turned about x, in O.
+    task_.targets = {{1, {0, 0, 0.05}, {1, 0, 0}, {-0.02, 0, 0}, {-1, 0, 0}},
+                     {2, {0, 0, 0.05}, {-1, 0, 0}, {0.02, 0, 0}, {1, 0, 0}}};
+  }
+
+  const HandShape hand_{workshop::MakeTwoJawGripper()};
+  const Parameters parameters_;
+  TransferTask task_;
+};
+
+TEST_F(GripperTask, ReplansOntoABoxThatIsNotQuiteThere) {
+  const Solid moved(CalcTransformed(
+      workshop::MakeBox({0.044, 0.04, 0.04}, 4),
+      {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.004, 0.002, 0)}));
+  // Contacts may lie a centimetre from their targets: jaws meet low down.
+  const ReplanResult result =
+      Replan(hand_, task_, task_.X_NH, moved, parameters_, 3);
+  ASSERT_EQ(result.outcome, TransferOutcome::kSucceeded);
+  EXPECT_TRUE(IsTransferOf(task_, *result.grasp, parameters_.transfer));
+  EXPECT_GE(result.grasp->quality.epsilon, parameters_.contact.stable_epsilon);
+}
+
+TEST_F(GripperTask, TheSameSeedGivesTheSameGrasp) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const auto a = Replan(hand_, task_, task_.X_NH, box, parameters_, 3);
+  const auto b = Replan(hand_, task_, task_.X_NH, box, parameters_, 3);
+  ASSERT_TRUE(a.grasp && b.grasp);
+  EXPECT_EQ(*a.grasp, *b.grasp);
+}
+
+TEST_F(GripperTask, ABoxOutOfReachIsNoContact) {
+  const Solid far(CalcTransformed(
+      workshop::MakeBox({0.04, 0.04, 0.04}, 4),
+      {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 0, -0.1)}));
+  const ReplanResult result =
+      Replan(hand_, task_, task_.X_NH, far, parameters_, 3);
+  EXPECT_EQ(result.outcome, TransferOutcome::kNoContact);
+  EXPECT_FALSE(result.grasp.has_value());
+}
+
+TEST_F(GripperTask, ABoxTooWideIsAFingerCollision) {
+  const Solid wide(workshop::MakeBox({0.12, 0.04, 0.04}, 4));
+  EXPECT_EQ(Replan(hand_, task_, task_.X_NH, wide, parameters_, 3).outcome,
+            TransferOutcome::kFingerCollision);
+}
+
+TEST_F(GripperTask, AHandThatHasGoneAstrayIsNoTransfer) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  Grasp grasp = *Replan(hand_, task_, task_.X_NH, box, parameters_, 3).grasp;
+  grasp.configuration.X_OH.translation.y() += 0.03;
+  EXPECT_FALSE(IsTransferOf(task_, grasp, parameters_.transfer));
+}
+
+TEST_F(GripperTask, AssemblyDrawsThePalmBackFromTheRestOfTheObject) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const Grasp grasp =
+      *Replan(hand_, task_, task_.X_NH, box, parameters_, 3).grasp;
+  // The whole object rises 3 mm into the gripper's base.
+  const double top = grasp.configuration.X_OH.translation.z() - 0.02 + 0.003;
+  const Solid taller(CalcTransformed(
+      workshop::MakeBox({0.04, 0.04, top + 0.02}, 4),
+      {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 0, 0.5 * top - 0.01)}));
+  const ReplanResult result =
+      Assemble(hand_, task_, grasp, taller, parameters_, 3);
+  ASSERT_EQ(result.outcome, TransferOutcome::kSucceeded);
+  EXPECT_GT(result.grasp->configuration.X_OH.translation.z(), top + 0.02);
+}
+
+TEST_F(GripperTask, AssemblyOnAnObjectThatFillsThePalmIsAPalmCollision) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const Grasp grasp =
+      *Replan(hand_, task_, task_.X_NH, box, parameters_, 3).grasp;
+  const Solid tower(workshop::MakeBox({0.04, 0.04, 0.2}, 4));
+  EXPECT_EQ(Assemble(hand_, task_, grasp, tower, parameters_, 3).outcome,
+            TransferOutcome::kPalmCollision);
+}
+
+TEST_F(GripperTask, TheBaselineClosesWhereItStands) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  EXPECT_GT(CalcOpenCloseEpsilon(hand_, task_, box, parameters_), 0.0);
+  const Solid wide(workshop::MakeBox({0.12, 0.04, 0.04}, 4));
+  EXPECT_EQ(CalcOpenCloseEpsilon(hand_, task_, wide, parameters_), 0.0);
+}
+
+TEST(OpposedPair, NeedsTwoNormalsMoreThanARightAngleApart) {
+  EXPECT_TRUE(HasOpposedPair({{1, 0, 0}, {-1, 0, 0}}, 2));
+  EXPECT_FALSE(HasOpposedPair({{1, 0, 0}, {0, 1, 0}}, 2));
+  EXPECT_FALSE(HasOpposedPair({{1, 0, 0}}, 2));
+}
+
+}  // namespace
+}  // namespace graspdb

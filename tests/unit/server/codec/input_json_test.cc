@@ -1,0 +1,182 @@
+#include "server/codec/input_json.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "server/codec/record_json.h"
+#include "tests/support/stored_records.h"
+
+namespace graspdb {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+std::string ReadSource(const std::string& path) {
+  std::ifstream file(std::string(GRASPDB_SOURCE_DIR) + "/" + path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(CategoryFromJson, ReadsEveryField) {
+  const auto category = CategoryFromJson(
+      R"({"name":"mug","title":"Mugs","parts":[{"label":"body"},)"
+      R"({"label":"handle","tasks":{"use":"to drink"}}],)"
+      R"("topology":[["body","handle"]],)"
+      R"("segmentation":{"max_residual":0.2}})");
+  ASSERT_TRUE(category) << category.error().message;
+  EXPECT_EQ(category->parts[1].tasks.at("use"), "to drink");
+  EXPECT_THAT(category->adjacency, ElementsAre(std::pair(0, 1)));
+  EXPECT_EQ(category->segmentation.max_residual, 0.2);
+}
+
+TEST(CategoryFromJson, WhatWasWrittenIsReadButForItsTime) {
+  const StoredCategory category = MakeMugCategory();
+  std::string text = ToJson(category);
+  const std::string time = R"(,"created_at":"")";
+  text.erase(text.find(time), time.size());
+  EXPECT_EQ(CategoryFromJson(text).value(), category);
+}
+
+TEST(CategoryFromJson, NamesTheFieldAtFault) {
+  const auto field_of = [](const char* text) {
+    const auto read = CategoryFromJson(text);
+    return read ? "none" : read.error().field;
+  };
+  EXPECT_EQ(field_of("{}"), "name");
+  EXPECT_EQ(field_of(R"({"name":"a"})"), "parts");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":{}})"), "parts");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":[{}]})"), "parts[0].label");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":[{"label":"b","tasks":{"t":1}}]})"),
+            "parts[0].tasks.t");
+  EXPECT_EQ(
+      field_of(
+          R"({"name":"a","parts":[{"label":"b"}],"topology":[["b","c"]]})"),
+      "topology");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":[],"segmentation":{"samples":1}})"),
+            "segmentation.samples");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":[],"colour":1})"), "colour");
+}
+
+TEST(PatchCategory, ChangesOnlyWhatIsGiven) {
+  StoredCategory expected = MakeMugCategory();
+  expected.title = "Cups";
+  EXPECT_EQ(PatchCategory(MakeMugCategory(), R"({"title":"Cups"})").value(),
+            expected);
+  EXPECT_EQ(PatchCategory(MakeMugCategory(), R"({"name":"x"})").error().field,
+            "name");
+}
+
+TEST(FaceLabels, ComeAsRangesOrOneByOne) {
+  EXPECT_THAT(
+      FaceLabelsFromJson(
+          R"({"labels":["a","b"],"faces":{"b":[[2,3]],"a":[[0,2],[3,4]]}})")
+          .value(),
+      ElementsAre("a", "a", "b", "a"));
+  EXPECT_THAT(FaceLabelsFromJson(R"({"face_labels":["a","b"]})").value(),
+              ElementsAre("a", "b"));
+}
+
+TEST(FaceLabels, RangesLeaveNoFaceOutAndTakeNoneTwice) {
+  for (const char* faces :
+       {R"({"a":[[0,2]],"b":[[1,3]]})", R"({"a":[[0,2]],"b":[[3,4]]})",
+        R"({"a":[[1,2]]})", R"({"a":[[0,0]]})", R"({"a":[[-1,2]]})",
+        R"({"a":[[0,99999999999]]})", R"({"a":[0,1]})", R"({"a":[[0,1.5]]})",
+        R"([])", R"({})"}) {
+    EXPECT_FALSE(FaceLabelsFromJson(std::string(R"({"faces":)") + faces + "}"))
+        << faces;
+  }
+}
+
+TEST(DataFolder, ItsCategoriesLabelsAndHandsAreRead) {
+  const auto mug = CategoryFileFromJson(ReadSource("data/mug/category.json"));
+  ASSERT_TRUE(mug) << mug.error().message;
+  EXPECT_EQ(mug->category.name, "mug");
+  ASSERT_FALSE(mug->examples.empty());
+  EXPECT_GE(mug->novel.size(), 3u);
+  const auto labels =
+      FaceLabelsFromJson(ReadSource("data/mug/" + mug->examples[0].labels));
+  ASSERT_TRUE(labels) << labels.error().message;
+  EXPECT_GT(labels->size(), 700u);
+  const auto hand =
+      HandFileFromJson(ReadSource("data/hands/barrett-bh8-280/hand.json"));
+  ASSERT_TRUE(hand) << hand.error().message;
+  EXPECT_THAT(hand->annotations.actuators, SizeIs(4));
+  EXPECT_THAT(hand->annotations.breakaway, SizeIs(3));
+  EXPECT_THAT(hand->annotations.contact_points, SizeIs(16));
+}
+
+TEST(HandFile, NamesTheFieldAtFault) {
+  const auto field_of = [](const std::string& more) {
+    const auto read =
+        HandFileFromJson(R"({"name":"h","urdf":"h.urdf")" + more + "}");
+    return read ? "none" : read.error().field;
+  };
+  EXPECT_EQ(field_of(""), "none");
+  EXPECT_EQ(field_of(R"(,"approach_axis_H":[0,0,2])"), "approach_axis_H");
+  EXPECT_EQ(field_of(R"(,"closing_force_n":0)"), "closing_force_n");
+  EXPECT_EQ(field_of(R"(,"actuators":[{"name":"a"}])"), "actuators[0].joint");
+  EXPECT_EQ(field_of(R"(,"contact_points":[{"link":"l","p_L":[0,0,0]}])"),
+            "contact_points[0].nhat_L");
+  EXPECT_EQ(field_of(R"(,"ignored_collisions":[["a"]])"), "ignored_collisions");
+}
+
+TEST(Orders, ComeBackFromTheJobsTableWithoutTheirBytes) {
+  TransferOrder order;
+  order.mesh.bytes = "mesh";
+  order.mesh.file_name = "mug.stl";
+  order.mesh.units = "mm";
+  order.mesh.category = "auto";
+  order.category = "auto";
+  order.part_labels = {"handle"};
+  order.count = 7;
+  order.sources = 12;
+  order.stage = GraspStage::kTransfer;
+  order.parameters.contact.friction = 0.25;
+  order.seed = 18446744073709551615u;
+  const TransferOrder read = StoredTransferOrderFromJson(ToJson(order)).value();
+  EXPECT_EQ(read.mesh.bytes, "");
+  EXPECT_EQ(read.mesh.file_name, "mug.stl");
+  EXPECT_EQ(read.category, "auto");
+  EXPECT_EQ(read.count, 7);
+  EXPECT_EQ(read.stage, GraspStage::kTransfer);
+  EXPECT_EQ(read.parameters, order.parameters);
+  EXPECT_EQ(read.seed, order.seed);
+  EXPECT_EQ(ToJson(read), ToJson(order));
+
+  LearnOrder lesson;
+  lesson.object_id = "o";
+  lesson.hands = {"claw"};
+  lesson.seed = 3;
+  EXPECT_EQ(ToJson(StoredLearnOrderFromJson(ToJson(lesson)).value()),
+            ToJson(lesson));
+  ImportOrder import;
+  import.role = ObjectRole::kExample;
+  import.face_labels = {"a", "b"};
+  import.learn = false;
+  EXPECT_EQ(ToJson(StoredImportOrderFromJson(ToJson(import)).value()),
+            ToJson(import));
+}
+
+TEST(Orders, BodiesOfRequestsAreChecked) {
+  EXPECT_EQ(PartLabelFromJson(R"({"label":"handle"})").value(), "handle");
+  EXPECT_EQ(PartLabelFromJson(R"({"label":""})").error().field, "label");
+  EXPECT_EQ(LearnOrderFromJson(R"({"parameters":{"contact":{"friction":9}}})")
+                .error()
+                .field,
+            "parameters.contact.friction");
+  const auto order =
+      SegmentOrderFromJson(R"({"settings":{"samples":500},"seed":2})");
+  ASSERT_TRUE(order);
+  EXPECT_EQ(order->settings, R"({"samples":500})");
+  EXPECT_THAT(
+      SegmentOrderFromJson(R"({"settings":{"samples":1}})").error().message,
+      HasSubstr("segmentation.samples"));
+}
+
+}  // namespace
+}  // namespace graspdb

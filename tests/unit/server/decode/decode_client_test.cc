@@ -1,0 +1,266 @@
+#include "server/decode/decode_client.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/support/mesh_files.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Each;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+DecoderOptions MakeOptions() {
+  DecoderOptions options;
+  options.helper = GRASPDB_DECODE_HELPER;
+  return options;
+}
+
+Result<DecodedMesh> Decode(const FileBytes& bytes, const std::string& name,
+                           const DecoderOptions& options = MakeOptions()) {
+  DecodeRequest request;
+  request.file_name = name;
+  return Decoder(options).Decode(bytes, request);
+}
+
+// A folder of this test's own, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "decode-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~ScratchFolder() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+// A program that does something else than decoding.
+DecoderOptions MakeImpostor(const ScratchFolder& folder,
+                            const std::string& script) {
+  const fs::path path = folder / "impostor";
+  std::ofstream(path) << "#!/bin/sh\n" << script << "\n";
+  fs::permissions(path, fs::perms::owner_all);
+  DecoderOptions options;
+  options.helper = path.string();
+  options.deadline = 2.0;
+  return options;
+}
+
+std::vector<std::string> RunAndReadLines(const std::string& command) {
+  std::vector<std::string> lines;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> line{};
+  while (fgets(line.data(), line.size(), pipe) != nullptr) {
+    lines.emplace_back(line.data());
+  }
+  pclose(pipe);
+  return lines;
+}
+
+TEST(Decoder, AdmitsEveryEncoding) {
+  const TriangleMesh box = workshop::MakeBox({0.1, 0.08, 0.06}, 3);
+  for (const auto& [name, bytes] : MakeEveryFile(box)) {
+    SCOPED_TRACE(name);
+    const auto decoded = Decode(bytes, name);
+    ASSERT_TRUE(decoded.has_value()) << decoded.error().message;
+    EXPECT_THAT(decoded->repairs, IsEmpty());
+    EXPECT_EQ(decoded->mesh_O.num_triangles(), box.num_triangles());
+    EXPECT_TRUE(decoded->work_O == decoded->mesh_O);
+    EXPECT_NEAR(decoded->mass.volume, 0.1 * 0.08 * 0.06, 1e-10);
+    EXPECT_NEAR(decoded->mass.p_McCM.norm(), 0, 1e-8);
+    EXPECT_EQ(decoded->format, name.ends_with("obj")   ? "OBJ"
+                               : name.ends_with("stl") ? "STL"
+                                                       : "PLY");
+  }
+}
+
+TEST(Decoder, RepairsAndDecimates) {
+  const TriangleMesh sphere = workshop::MakeSphere(50.0, 48);
+  const TriangleMesh open(sphere.vertices(), {sphere.triangles().begin(),
+                                              sphere.triangles().end() - 1});
+  DecodeRequest request;
+  request.format = MeshFormat::kPly;
+  request.metres_per_unit = 0.001;
+  request.work_triangles = 400;
+  const auto decoded =
+      Decoder(MakeOptions()).Decode(MakeBinaryPly(open, true), request);
+  ASSERT_TRUE(decoded.has_value()) << decoded.error().message;
+  EXPECT_THAT(decoded->repairs,
+              ::testing::ElementsAre("filled 1 hole with 1 face"));
+  EXPECT_EQ(decoded->mesh_O.num_triangles(), sphere.num_triangles());
+  EXPECT_LE(decoded->work_O.num_triangles(), 400);
+  EXPECT_TRUE(IsClosed(decoded->work_O));
+  EXPECT_NEAR(decoded->mass.max_radius, 0.05, 1e-4);
+}
+
+TEST(Decoder, RefusesWhatIsNoMeshOrNoSolidOrNoObjectToGrasp) {
+  const TriangleMesh box = workshop::MakeBox({0.1, 0.1, 0.1});
+  const TriangleMesh sheet({{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}});
+  FileBytes truncated = MakeBinaryStl(box);
+  truncated.resize(truncated.size() / 2);
+  struct {
+    FileBytes bytes;
+    std::string name;
+    const char* words;
+  } const cases[] = {
+      {{}, "", "empty"},
+      {{}, "a.obj", "OBJ: it is empty"},
+      {truncated, "a.stl", "STL: its header announces 12 triangles"},
+      {ToBytes("%PDF-1.4 nothing like a mesh"), "", "no known mesh format"},
+      {MakeObj(sheet), "a.obj", "one plane"},
+      {MakeObj(workshop::MakeBox({100, 100, 100})), "a.obj", "100 m"},
+  };
+  for (const auto& [bytes, name, words] : cases) {
+    const auto decoded = Decode(bytes, name);
+    ASSERT_FALSE(decoded.has_value()) << words;
+    EXPECT_EQ(decoded.error().code, ErrorCode::kUnusableInput);
+    EXPECT_THAT(decoded.error().message, HasSubstr(words));
+    EXPECT_FALSE(decoded.error().hint.empty());
+  }
+}
+
+TEST(Decoder, NamesTheLimitThatIsExceeded) {
+  const FileBytes bytes = MakeObj(workshop::MakeBox({0.1, 0.1, 0.1}));
+  DecodeRequest request;
+  request.file_name = "a.obj";
+  request.limits.max_triangles = 11;
+  auto decoded = Decoder(MakeOptions()).Decode(bytes, request);
+  ASSERT_FALSE(decoded.has_value());
+  EXPECT_EQ(decoded.error().code, ErrorCode::kTooLarge);
+  EXPECT_THAT(decoded.error().message, HasSubstr("the limit is 11"));
+  request.limits.max_bytes = 10;
+  decoded = Decoder(MakeOptions()).Decode(bytes, request);
+  ASSERT_FALSE(decoded.has_value());
+  EXPECT_EQ(decoded.error().code, ErrorCode::kTooLarge);
+  EXPECT_THAT(decoded.error().message, HasSubstr("the limit is 10"));
+}
+
+TEST(Decoder, GivesUpAtTheDeadline) {
+  ScratchFolder folder;
+  // Never reads what it is sent, which is more than a socket holds.
+  DecoderOptions options = MakeImpostor(folder, "exec sleep 1000");
+  options.deadline = 0.3;
+  for (const std::size_t size : {100u, 10'000'000u}) {
+    const auto decoded = Decode(FileBytes(size, 'v'), "a.obj", options);
+    ASSERT_FALSE(decoded.has_value());
+    EXPECT_EQ(decoded.error().code, ErrorCode::kUnusableInput);
+    EXPECT_THAT(decoded.error().message, HasSubstr("gave up after 0.3 s"));
+  }
+}
+
+TEST(Decoder, OutlivesAHelperThatMisbehaves) {
+  ScratchFolder folder;
+  const FileBytes bytes = MakeObj(workshop::MakeBox({0.1, 0.1, 0.1}, 40));
+  for (const auto& [script, words] : std::map<std::string, std::string>{
+           {"kill -SEGV $$", "crashed on the mesh (signal 11)"},
+           {"exit 0", "without an answer"},
+           {"exit 3", "without an answer"},
+           {"cat", "without an answer"},
+           {"cat > /dev/null; echo GDA1", "without an answer"},
+           {"exec 0<&- 1>&-; sleep 1000", "signal 9"}}) {
+    SCOPED_TRACE(script);
+    const auto decoded = Decode(bytes, "a.obj", MakeImpostor(folder, script));
+    ASSERT_FALSE(decoded.has_value());
+    EXPECT_EQ(decoded.error().code, ErrorCode::kUnusableInput);
+    EXPECT_THAT(decoded.error().message, HasSubstr(words));
+  }
+}
+
+// Sanitizers cannot live within a limit on memory.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+TEST(Decoder, SaysSoWhenAMeshNeedsTooMuchMemory) {
+  DecoderOptions options = MakeOptions();
+  options.memory_bytes = 160 << 20;
+  const auto decoded =
+      Decode(MakeBinaryStl(workshop::MakeSphere(0.05, 300)), "a.stl", options);
+  ASSERT_FALSE(decoded.has_value());
+  EXPECT_EQ(decoded.error().code, ErrorCode::kUnusableInput);
+  EXPECT_THAT(decoded.error().message,
+              ::testing::AnyOf(HasSubstr("memory"), HasSubstr("crashed")));
+}
+#endif
+
+TEST(Decoder, ReportsAHelperThatIsNotThere) {
+  DecoderOptions options;
+  options.helper = "/nonexistent/graspdb-decode";
+  const auto decoded = Decode(ToBytes("v"), "a.obj", options);
+  ASSERT_FALSE(decoded.has_value());
+  EXPECT_EQ(decoded.error().code, ErrorCode::kInternal);
+  EXPECT_THAT(decoded.error().message, HasSubstr("No such file"));
+  EXPECT_EQ(Decoder(options).Check().error().code, ErrorCode::kInternal);
+}
+
+TEST(Decoder, ChecksThatItsHelperIsConfined) {
+  const auto confinement = Decoder(MakeOptions()).Check();
+  ASSERT_TRUE(confinement.has_value()) << confinement.error().message;
+  EXPECT_THAT(*confinement, EndsWith("seccomp"));
+}
+
+TEST(DecodeHelper, IsRefusedTenForbiddenSystemCalls) {
+  const auto lines =
+      RunAndReadLines(std::string(GRASPDB_DECODE_HELPER) + " --probe");
+  EXPECT_THAT(lines, SizeIs(10));
+  EXPECT_THAT(lines, Each(EndsWith(": blocked\n")));
+}
+
+TEST(DecodeHelper, OpensNothingThatAMeshRefersTo) {
+  if (std::system("strace -V > /dev/null 2>&1 && strace true 2> /dev/null")) {
+    GTEST_SKIP() << "strace cannot run here";
+  }
+  ScratchFolder folder;
+  DecodeRequest request;
+  request.file_name = "a.obj";
+  FileBytes bytes = EncodeRequest(request);
+  const FileBytes head = ToBytes("mtllib /etc/passwd\nusemtl root\n");
+  const FileBytes mesh = MakeObj(workshop::MakeBox({0.1, 0.1, 0.1}));
+  bytes.insert(bytes.end(), head.begin(), head.end());
+  bytes.insert(bytes.end(), mesh.begin(), mesh.end());
+  std::ofstream(folder / "request", std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  ASSERT_EQ(std::system(fmt::format("strace -f -o {} {} < {} > {}",
+                                    (folder / "trace").string(),
+                                    GRASPDB_DECODE_HELPER,
+                                    (folder / "request").string(),
+                                    (folder / "answer").string())
+                            .c_str()),
+            0);
+  EXPECT_GT(fs::file_size(folder / "answer"), 500u);  // A mesh, no error.
+  std::ifstream trace(folder / "trace");
+  bool confined = false;
+  bool has_read = false;
+  for (std::string line; std::getline(trace, line);) {
+    EXPECT_THAT(line, ::testing::Not(HasSubstr("passwd")));
+    if (line.find("seccomp(SECCOMP_SET_MODE_FILTER") != line.npos) {
+      confined = true;
+    }
+    if (!confined) continue;
+    for (const char* call : {" open", " socket(", " connect(", " execve("}) {
+      EXPECT_THAT(line, ::testing::Not(HasSubstr(call)));
+    }
+    if (line.find(" read(0") != line.npos) has_read = true;
+  }
+  EXPECT_TRUE(confined && has_read);
+}
+
+}  // namespace
+}  // namespace graspdb

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+#include "server/decode/decode_client.h"
+#include "tests/support/mesh_files.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+// Changes a few bytes or numbers, cuts, repeats or swaps pieces.
+FileBytes Mutate(FileBytes bytes, Random& random) {
+  for (int i = random.NextIndex(4); i >= 0 && !bytes.empty(); --i) {
+    const int size = static_cast<int>(bytes.size());
+    const int at = random.NextIndex(size);
+    const int length = std::min(size - at, 1 + random.NextIndex(1 + size / 8));
+    const FileBytes piece(bytes.begin() + at, bytes.begin() + at + length);
+    switch (random.NextIndex(6)) {
+      case 0:
+        bytes[at] = static_cast<uint8_t>(random.NextBits());
+        break;
+      case 1:
+        bytes[at] ^= static_cast<uint8_t>(1 << random.NextIndex(8));
+        break;
+      case 2:
+        bytes.erase(bytes.begin() + at, bytes.begin() + at + length);
+        break;
+      case 3:
+        bytes.insert(bytes.begin() + random.NextIndex(size), piece.begin(),
+                     piece.end());
+        break;
+      case 4: {
+        const FileBytes word =
+            ToBytes(std::array{"nan", "-1", "4294967295", "1e39", "0",
+                               "999999999999", " ", "\n"}[random.NextIndex(8)]);
+        bytes.insert(bytes.begin() + at, word.begin(), word.end());
+        break;
+      }
+      default: {
+        const auto value =
+            std::array{
+                0u,          0xffffffffu, 0x7fffffffu,
+                0x7fc00000u, 0x7f7fffffu, 0x80000000u}[random.NextIndex(6)];
+        if (at + 4 <= size) std::memcpy(bytes.data() + at, &value, 4);
+      }
+    }
+  }
+  return bytes;
+}
+
+TEST(Decoder, AnswersThreeHundredMutantsOfEachFormat) {
+  const TriangleMesh mesh = workshop::MakeCylinder(0.04, 0.1, 8, 2);
+  const auto files = MakeEveryFile(mesh);
+  constexpr int kMutants = 150;  // Of each of two encodings a format.
+  std::vector<std::pair<std::string, FileBytes>> work;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto& [name, bytes] = files[i];
+    for (int k = 0; k < (name == "a.obj" ? 2 * kMutants : kMutants); ++k) {
+      Random random(DeriveSeed(11, {i, static_cast<uint64_t>(k)}));
+      work.emplace_back(name, Mutate(bytes, random));
+    }
+  }
+  std::atomic<std::size_t> next{0};
+  std::atomic<int> solids{0};
+  std::atomic<int> refused{0};
+  DecoderOptions options;
+  options.helper = GRASPDB_DECODE_HELPER;
+  const Decoder decoder(options);
+  const auto run = [&] {
+    for (std::size_t i = next++; i < work.size(); i = next++) {
+      DecodeRequest request;
+      request.file_name = work[i].first;
+      const auto decoded = decoder.Decode(work[i].second, request);
+      if (decoded) {
+        ++solids;
+        EXPECT_TRUE(IsClosed(decoded->mesh_O));
+        continue;
+      }
+      ++refused;
+      EXPECT_TRUE(decoded.error().code == ErrorCode::kUnusableInput ||
+                  decoded.error().code == ErrorCode::kTooLarge)
+          << decoded.error().message;
+      EXPECT_FALSE(decoded.error().message.empty());
+    }
+  };
+  std::thread other(run);
+  run();
+  other.join();
+  EXPECT_EQ(solids + refused, 6 * kMutants + kMutants);
+  EXPECT_GT(solids, 50);
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace graspdb

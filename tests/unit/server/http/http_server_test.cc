@@ -1,0 +1,419 @@
+#include "server/http/http_server.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+
+namespace graspdb {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/** A socket connected to the server under test. */
+class Client {
+ public:
+  explicit Client(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connected_ = connect(socket_, reinterpret_cast<sockaddr*>(&address),
+                         sizeof(address)) == 0;
+  }
+  ~Client() { close(socket_); }
+  Client(const Client&) = delete;
+
+  bool connected() const { return connected_; }
+  void Send(const std::string& bytes) {
+    send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  void EndSending() { shutdown(socket_, SHUT_WR); }
+  /** All that arrives until the server ends the connection. */
+  std::string ReadAll() {
+    std::string all;
+    char bytes[4096];
+    for (ssize_t n; (n = recv(socket_, bytes, sizeof(bytes), 0)) > 0;) {
+      all.append(bytes, static_cast<size_t>(n));
+    }
+    return all;
+  }
+  /** What arrives up to and including the given text. */
+  std::string ReadUntil(const std::string& end) {
+    std::string all;
+    char byte;
+    while (!all.ends_with(end) && recv(socket_, &byte, 1, 0) == 1) all += byte;
+    return all;
+  }
+
+ private:
+  int socket_;
+  bool connected_{false};
+};
+
+HttpResponse Text(const std::string& text) {
+  HttpResponse response;
+  response.content_type = "text/plain";
+  response.body = text;
+  return response;
+}
+
+/** A server with a few routes, on a free port. */
+class HttpServerTest : public testing::Test {
+ protected:
+  HttpServerTest() {
+    HttpServerOptions options;
+    options.threads = 8;
+    options.limits.max_json_bytes = 100;
+    options.limits.max_upload_bytes = 1000;
+    options.limits.idle_timeout = std::chrono::seconds(2);
+    options.limits.head_timeout = std::chrono::seconds(1);
+    options.limits.body_timeout = std::chrono::seconds(1);
+    options.log = [this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      log_ += line + "\n";
+    };
+    server_ = std::make_unique<HttpServer>(MakeRouter(), std::move(options));
+    const auto port = server_->Bind("127.0.0.1", 0);
+    port_ = port ? *port : 0;
+    thread_ = std::thread([this] { EXPECT_TRUE(server_->Serve()); });
+  }
+  ~HttpServerTest() override { Stop(); }
+
+  void Stop() {
+    server_->Stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  static Router MakeRouter() {
+    Router router;
+    router.Add({"GET", "/hello/{name}", BodyKind::kNone,
+                [](const HttpRequest& request) {
+                  return Text("hello " + request.path_parameters.at("name"));
+                }});
+    router.Add({"POST", "/json", BodyKind::kJson,
+                [](const HttpRequest& request) { return Text(request.body); }});
+    router.Add(
+        {"POST", "/upload", BodyKind::kUpload, [](const HttpRequest& request) {
+           std::string text = request.body;
+           for (const auto& file : request.files) {
+             text += file.name + "=" + file.filename + ":" + file.content + ";";
+           }
+           for (const auto& [key, value] : request.query) {
+             text += key + "=" + value + ";";
+           }
+           return Text(text);
+         }});
+    router.Add({"GET", "/throw", BodyKind::kNone,
+                [](const HttpRequest&) -> Result<HttpResponse> {
+                  throw std::runtime_error("secret");
+                }});
+    router.Add({"GET", "/fail", BodyKind::kNone,
+                [](const HttpRequest&) -> Result<HttpResponse> {
+                  return Error{ErrorCode::kConflict, "No.", "Do this."};
+                }});
+    router.Add({"DELETE", "/thing", BodyKind::kNone, [](const HttpRequest&) {
+                  HttpResponse response;
+                  response.status = 204;
+                  return response;
+                }});
+    router.Add(
+        {"GET", "/wait", BodyKind::kNone, [](const HttpRequest& request) {
+           while (!request.stop.stop_requested()) {
+             std::this_thread::sleep_for(std::chrono::milliseconds(5));
+           }
+           return Text("stopped");
+         }});
+    return router;
+  }
+
+  /** One exchange on a connection of its own. */
+  std::string Exchange(const std::string& bytes) {
+    Client client(port_);
+    client.Send(bytes);
+    return client.ReadAll();
+  }
+  std::string Get(const std::string& target, const std::string& fields = "") {
+    return Exchange("GET " + target +
+                    " HTTP/1.1\r\nHost: h\r\nConnection: close\r\n" + fields +
+                    "\r\n");
+  }
+  std::string Post(const std::string& target, const std::string& fields,
+                   const std::string& body) {
+    return Exchange("POST " + target +
+                    " HTTP/1.1\r\nHost: h\r\nConnection: close\r\n" + fields +
+                    "Content-Length: " + std::to_string(body.size()) +
+                    "\r\n\r\n" + body);
+  }
+  std::string log() {
+    const std::lock_guard lock(mutex_);
+    return log_;
+  }
+
+  int port_{0};
+  std::unique_ptr<HttpServer> server_;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::string log_;
+};
+
+TEST_F(HttpServerTest, AnswersWithBodyAndHeaders) {
+  const std::string answer = Get("/hello/a%20b", "X-Request-Id: my-id\r\n");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(answer, HasSubstr("X-Request-Id: my-id\r\n"));
+  EXPECT_THAT(answer, HasSubstr("Server-Timing: total;dur="));
+  EXPECT_THAT(answer, HasSubstr("Content-Length: 9\r\n"));
+  EXPECT_THAT(answer, EndsWith("\r\n\r\nhello a b"));
+}
+
+TEST_F(HttpServerTest, ARequestIdThatCouldForgeALogIsReplaced) {
+  EXPECT_THAT(Get("/hello/x", "X-Request-Id: a b\r\n"),
+              Not(HasSubstr("X-Request-Id: a b")));
+}
+
+TEST_F(HttpServerTest, HeadIsGetWithoutBody) {
+  const std::string answer = Exchange(
+      "HEAD /hello/x HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(answer, HasSubstr("Content-Length: 7\r\n"));
+  EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
+}
+
+TEST_F(HttpServerTest, NoContentHasNoBody) {
+  const std::string answer = Exchange(
+      "DELETE /thing HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 204 No Content\r\n"));
+  EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
+}
+
+TEST_F(HttpServerTest, KeepsAConnectionForManyRequests) {
+  Client client(port_);
+  for (int i = 0; i < 20; ++i) {
+    client.Send("GET /hello/x HTTP/1.1\r\nHost: h\r\n\r\n");
+    EXPECT_THAT(client.ReadUntil("hello x"), EndsWith("hello x"));
+  }
+}
+
+TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
+  const std::string answer = Exchange(
+      "GET /hello/1 HTTP/1.1\r\nHost: h\r\n\r\n"
+      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 2\r\n\r\n{}"
+      "GET /hello/2 HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+  const size_t one = answer.find("hello 1");
+  const size_t two = answer.find("\r\n\r\n{}");
+  const size_t three = answer.find("hello 2");
+  EXPECT_LT(one, two);
+  EXPECT_LT(two, three);
+  EXPECT_NE(three, std::string::npos);
+}
+
+TEST_F(HttpServerTest, UnknownPathsAndMethodsAreProblems) {
+  EXPECT_THAT(Get("/nothing"), HasSubstr("urn:graspdb:problem:not_found"));
+  const std::string answer = Get("/json");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(answer, HasSubstr("Allow: POST\r\n"));
+  EXPECT_THAT(answer, HasSubstr("Content-Type: application/problem+json"));
+  EXPECT_THAT(
+      Exchange("BREW /json HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n"),
+      StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(Get("/%zz"), StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(HttpServerTest, AnErrorOfAHandlerIsAProblem) {
+  const std::string answer = Get("/fail");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 409 Conflict\r\n"));
+  EXPECT_THAT(answer, HasSubstr("\"hint\":\"Do this.\""));
+}
+
+TEST_F(HttpServerTest, AnExceptionTellsItsTextToTheLogOnly) {
+  const std::string answer = Get("/throw", "X-Request-Id: r-7\r\n");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 500"));
+  EXPECT_THAT(answer, Not(HasSubstr("secret")));
+  EXPECT_THAT(answer, HasSubstr("\"request_id\":\"r-7\""));
+  Stop();
+  EXPECT_THAT(log(), HasSubstr("id=r-7 cause=\"secret\""));
+}
+
+TEST_F(HttpServerTest, EveryAnswerIsOneLineInTheLog) {
+  Get("/hello/x", "X-Request-Id: r-8\r\n");
+  Stop();
+  EXPECT_THAT(log(),
+              HasSubstr("event=request id=r-8 method=GET "
+                        "target=\"/hello/x\" status=200 in=0 out=7 ms="));
+}
+
+TEST_F(HttpServerTest, ReadsAPlainAndAChunkedBody) {
+  EXPECT_THAT(Post("/json", "Content-Type: application/json\r\n", "{\"a\":1}"),
+              EndsWith("\r\n\r\n{\"a\":1}"));
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+                       "Transfer-Encoding: chunked\r\n\r\n"
+                       "2\r\n{\"\r\n5\r\na\":1}\r\n0\r\n\r\n"),
+              EndsWith("\r\n\r\n{\"a\":1}"));
+}
+
+TEST_F(HttpServerTest, ReadsAFormWithFileAndFields) {
+  const std::string body =
+      "--B\r\nContent-Disposition: form-data; name=\"mesh\"; "
+      "filename=\"m.stl\"\r\n\r\nbytes\r\n"
+      "--B\r\nContent-Disposition: form-data; name=\"category\"\r\n\r\nmug\r\n"
+      "--B--\r\n";
+  EXPECT_THAT(Post("/upload?seed=3",
+                   "Content-Type: multipart/form-data; boundary=B\r\n", body),
+              EndsWith("mesh=m.stl:bytes;seed=3;category=mug;"));
+  EXPECT_THAT(Post("/upload",
+                   "Content-Type: multipart/form-data; boundary=C\r\n", body),
+              StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(HttpServerTest, ABodyOverItsLimitIsRefusedUnread) {
+  Client client(port_);
+  client.Send(
+      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 101\r\n"
+      "Expect: 100-continue\r\n\r\n");
+  const std::string answer = client.ReadAll();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(answer, HasSubstr("A body has at most 100 bytes here."));
+  EXPECT_THAT(answer, HasSubstr("Connection: close\r\n"));
+}
+
+TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsWanted) {
+  Client client(port_);
+  client.Send(
+      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 2\r\n"
+      "Expect: 100-continue\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(client.ReadUntil("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  client.Send("{}");
+  EXPECT_THAT(client.ReadAll(), EndsWith("\r\n\r\n{}"));
+}
+
+TEST_F(HttpServerTest, AChunkedBodyOverItsLimitIsRefused) {
+  std::string body;
+  for (int i = 0; i < 30; ++i) body += "5\r\n[[[[[\r\n";
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+                       "Transfer-Encoding: chunked\r\n\r\n" +
+                       body + "0\r\n\r\n"),
+              StartsWith("HTTP/1.1 413"));
+}
+
+TEST_F(HttpServerTest, ContentCodingsAndOtherTypesAreRefused) {
+  EXPECT_THAT(Post("/json", "Content-Encoding: gzip\r\n", "{}"),
+              StartsWith("HTTP/1.1 415"));
+  EXPECT_THAT(Post("/json", "Content-Type: text/xml\r\n", "{}"),
+              StartsWith("HTTP/1.1 415"));
+}
+
+TEST_F(HttpServerTest, AnUnreadBodyIsNeverTakenForARequest) {
+  const std::string smuggled = "GET /hello/2 HTTP/1.1\r\nHost: h\r\n\r\n";
+  const std::string answer =
+      Exchange("POST /nothing HTTP/1.1\r\nHost: h\r\nContent-Length: " +
+               std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled);
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(answer, Not(HasSubstr("hello")));
+  const std::string get =
+      Exchange("GET /hello/1 HTTP/1.1\r\nHost: h\r\nContent-Length: " +
+               std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled);
+  EXPECT_THAT(get, StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(get, Not(HasSubstr("hello")));
+}
+
+TEST_F(HttpServerTest, RangesAreIgnored) {
+  std::string ranges = "Range: bytes=0-0";
+  for (int i = 0; i < 700; ++i) ranges += ",0-";
+  EXPECT_THAT(Get("/hello/x", ranges + "\r\n"), EndsWith("\r\n\r\nhello x"));
+}
+
+TEST_F(HttpServerTest, AnEndlessHeadIsRefused) {
+  EXPECT_THAT(
+      Exchange("GET / HTTP/1.1\r\nHost: h\r\n" + std::string(40'000, 'a')),
+      StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(Exchange("GET /" + std::string(9'000, 'a') +
+                       " HTTP/1.1\r\nHost: h\r\n\r\n"),
+              StartsWith("HTTP/1.1 414"));
+}
+
+TEST_F(HttpServerTest, ASlowClientIsToldSo) {
+  EXPECT_THAT(Exchange("GET / HTT"), StartsWith("HTTP/1.1 408"));
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+                       "Content-Length: 5\r\n\r\n{"),
+              StartsWith("HTTP/1.1 408"));
+}
+
+TEST_F(HttpServerTest, AnswersOrDropsEveryMutantOfARequest) {
+  const std::string form =
+      "--B\r\nContent-Disposition: form-data; name=\"mesh\"; "
+      "filename=\"m.stl\"\r\n\r\nbytes\r\n--B--\r\n";
+  const std::vector<std::string> seeds = {
+      "GET /hello/a%20b?c=d&e HTTP/1.1\r\nHost: h\r\nRange: bytes=0-1\r\n\r\n",
+      "POST /upload?seed=3 HTTP/1.1\r\nHost: h\r\nContent-Type: "
+      "multipart/form-data; boundary=B\r\nContent-Length: " +
+          std::to_string(form.size()) + "\r\n\r\n" + form,
+      "POST /json HTTP/1.1\r\nHost: h\r\nTransfer-Encoding: chunked\r\n\r\n"
+      "2\r\n{}\r\n0\r\n\r\n"};
+  Random random(1);
+  for (int i = 0; i < 1500; ++i) {
+    std::string mutant = seeds[static_cast<size_t>(i) % seeds.size()];
+    for (int edits = random.NextIndex(4); edits >= 0; --edits) {
+      const auto at = static_cast<size_t>(
+          random.NextIndex(static_cast<int>(mutant.size())));
+      const int kind = random.NextIndex(3);
+      if (kind == 0) mutant[at] = static_cast<char>(random.NextBits());
+      if (kind == 1) mutant.erase(at, 1 + at % 5);
+      if (kind == 2) mutant.insert(at, mutant.substr(at / 2, 8));
+    }
+    Client client(port_);
+    client.Send(mutant);
+    client.EndSending();
+    const std::string answer = client.ReadAll();
+    EXPECT_TRUE(answer.empty() || answer.starts_with("HTTP/1.1 ")) << mutant;
+    EXPECT_THAT(answer, Not(HasSubstr("HTTP/1.1 500"))) << mutant;
+  }
+  EXPECT_THAT(Get("/hello/x"), EndsWith("hello x"));
+}
+
+TEST_F(HttpServerTest, StopLetsARequestInFlightEnd) {
+  Client waiting(port_);
+  waiting.Send("GET /wait HTTP/1.1\r\nHost: h\r\n\r\n");
+  Client idle(port_);
+  idle.Send("GET /hello/x HTTP/1.1\r\nHost: h\r\n\r\n");
+  idle.ReadUntil("hello x");
+  Stop();
+  EXPECT_THAT(waiting.ReadAll(), EndsWith("\r\n\r\nstopped"));
+  EXPECT_EQ(idle.ReadAll(), "");
+  EXPECT_FALSE(Client(port_).connected());
+}
+
+TEST_F(HttpServerTest, ASecondServerCannotTakeThePort) {
+  HttpServer second(MakeRouter(), HttpServerOptions{});
+  const auto bound = second.Bind("127.0.0.1", port_);
+  ASSERT_FALSE(bound);
+  EXPECT_THAT(bound.error().message, HasSubstr("Address already in use"));
+}
+
+TEST(HttpServer, StopBeforeServeIsNotLost) {
+  HttpServer server(Router(), HttpServerOptions{});
+  ASSERT_TRUE(server.Bind("127.0.0.1", 0));
+  server.Stop();
+  EXPECT_TRUE(server.Serve());
+}
+
+TEST(HttpServer, AnUnknownHostCannotBeListenedOn) {
+  HttpServer server(Router(), HttpServerOptions{});
+  EXPECT_FALSE(server.Bind("256.1.1.1", 0));
+}
+
+}  // namespace
+}  // namespace graspdb
