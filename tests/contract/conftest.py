@@ -30,7 +30,7 @@ def server(binary, tmp_path_factory):
     database = folder / "contract.db"
     (folder / "hands").symlink_to(ROOT / "data" / "hands")
     subprocess.run([binary, "populate", str(folder), "--db", str(database)],
-                   check=True, timeout=120)
+                   check=True, timeout=400)
     live = LiveServer(binary, database, folder)
     yield live
     assert live.alive(), live.log()
@@ -54,7 +54,7 @@ def world(contract):
         "topology": [["body", "handle"]]})
     example = contract.call(
         "postExample", 200, path={"name": "mug"}, query={"learn": "false"},
-        headers={"Prefer": "wait=120"},
+        headers={"Prefer": "wait=150"},
         files={"mesh": ("classic.obj", (mug / "classic.obj").read_bytes()),
                "labels": ("l.json", (mug / "classic.labels.json").read_bytes())})
     spaces = contract.call(

@@ -264,7 +264,7 @@ def test_nothing_is_learned_twice(contract, world):
     from conftest import QUICK
     spaces = contract.call(
         "postGraspSpaces", 200, path={"id": world["example"]["id"]},
-        headers={"Prefer": "wait=60"},
+        headers={"Prefer": "wait=150"},
         body={"parameters": QUICK, "parts": ["body"]})
     assert spaces["items"] == [world["space"]]
 
@@ -273,7 +273,7 @@ def test_a_grasp_space_can_be_deleted(contract, world):
     from conftest import QUICK
     path = {"id": world["example"]["id"]}
     spaces = contract.call(
-        "postGraspSpaces", 200, path=path, headers={"Prefer": "wait=120"},
+        "postGraspSpaces", 200, path=path, headers={"Prefer": "wait=150"},
         body={"parameters": QUICK, "parts": ["body"], "seed": 5})["items"]
     fresh = [s for s in spaces if s["id"] != world["space"]["id"]]
     assert [s["provenance"]["seed"] for s in fresh] == [5]
@@ -596,7 +596,7 @@ def test_labels_of_an_example_are_checked(contract, world):
         answer = contract.call(
             "postExample", (202, 400, 422), path={"name": "mug"},
             files={"mesh": ("b.obj", BOX), "labels": ("l.json", labels)},
-            query={"learn": "false"}, headers={"Prefer": "wait=30"})
+            query={"learn": "false"}, headers={"Prefer": "wait=150"})
         assert contract.last.status_code != 202, answer
 
 
