@@ -1,6 +1,6 @@
 -- The first schema: everything that graspdb keeps, in SI units.
 -- Append-only: never edit a released migration, add the next number instead.
--- Each file runs in one transaction, which also sets user_version to its number.
+-- Each file runs in one transaction, which sets user_version to its number, too.
 -- Blobs are described in schema/README.md. Times are RFC 3339 UTC text.
 -- A seed is an unsigned 64-bit number stored as the signed one with its bits.
 
@@ -294,7 +294,8 @@ CREATE TABLE transfer_attempts (
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX attempts_by_source ON transfer_attempts (source_grasp_id);
 CREATE INDEX attempts_by_part ON transfer_attempts (part_id);
-CREATE INDEX attempts_by_transferred ON transfer_attempts (transferred_grasp_id);
+CREATE INDEX attempts_by_transferred
+  ON transfer_attempts (transferred_grasp_id);
 CREATE INDEX attempts_by_assembled ON transfer_attempts (assembled_grasp_id);
 
 CREATE TABLE jobs (
@@ -302,8 +303,11 @@ CREATE TABLE jobs (
   kind TEXT NOT NULL CHECK (kind IN ('import', 'learn', 'transfer')),
   state TEXT NOT NULL CHECK (
     state IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')),
+  -- 1: takes minutes, and is worked on apart from what someone waits for.
+  slow INTEGER NOT NULL CHECK (slow IN (0, 1)),
   request TEXT NOT NULL,
   idempotency_key TEXT UNIQUE,
+  attempts INTEGER NOT NULL DEFAULT 0,  -- how often it was begun
   progress REAL NOT NULL,
   stage TEXT NOT NULL,
   result_id TEXT,  -- of a transfer or object, which may be deleted meanwhile
@@ -316,7 +320,7 @@ CREATE TABLE jobs (
   finished_at TEXT,
   payload BLOB  -- the mesh to import; NULL once the job has finished
 ) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state, id);
+CREATE INDEX jobs_by_state ON jobs (state, slow, id);
 
 -- Answers to requests with an Idempotency-Key, kept for a day.
 CREATE TABLE replies (

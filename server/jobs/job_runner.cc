@@ -22,13 +22,12 @@ JobRunner::~JobRunner() { Stop(); }
 
 Result<void> JobRunner::Start() {
   GRASPDB_EXPECTS(workers_.empty());
-  const auto requeued = service_.store().RequeueRunningJobs();
+  const auto requeued =
+      service_.store().RequeueRunningJobs(/* crashed = */ true);
   if (!requeued) return requeued.error();
   stopping_ = false;
-  for (const std::vector<JobKind>& kinds :
-       {std::vector{JobKind::kTransfer},
-        std::vector{JobKind::kImport, JobKind::kLearn}}) {
-    workers_.emplace_back([this, kinds] { Work(kinds); });
+  for (const bool slow : {false, true}) {
+    workers_.emplace_back([this, slow] { Work(slow); });
   }
   return {};
 }
@@ -44,7 +43,9 @@ void JobRunner::Stop() {
   for (std::thread& worker : workers_) worker.join();
   workers_.clear();
   // What was interrupted starts again with the next server.
-  if (const auto requeued = service_.store().RequeueRunningJobs(); !requeued) {
+  if (const auto requeued =
+          service_.store().RequeueRunningJobs(/* crashed = */ false);
+      !requeued) {
     std::fprintf(stderr, "graspdb: %s\n", requeued.error().message.c_str());
   }
 }
@@ -94,7 +95,7 @@ Result<StoredJob> JobRunner::Cancel(const std::string& id) {
   return cancelled;
 }
 
-void JobRunner::Work(const std::vector<JobKind>& kinds) {
+void JobRunner::Work(bool slow) {
   while (true) {
     uint64_t seen = 0;
     {
@@ -102,7 +103,7 @@ void JobRunner::Work(const std::vector<JobKind>& kinds) {
       if (stopping_) return;
       seen = changes_;
     }
-    auto claimed = service_.store().ClaimJob(kinds);
+    auto claimed = service_.store().ClaimJob(slow);
     if (claimed && *claimed) {
       Run(**claimed);
       continue;

@@ -19,9 +19,9 @@ namespace graspdb {
 class Service;
 
 /** Takes jobs from the store and carries them out by the service's verbs, one
- after the other in each of its two threads: transfers, and all else. The row of
- a job says where it stands at rest; while it runs, its progress is only
- here. */
+ after the other in each of its two threads: slow ones, and those someone waits
+ for. The row of a job says where it stands at rest; while it runs, its progress
+ is only here. */
 class JobRunner {
  public:
   explicit JobRunner(Service& service);
@@ -54,7 +54,7 @@ class JobRunner {
     bool cancelled_by_user{false};
   };
 
-  void Work(const std::vector<JobKind>& kinds);
+  void Work(bool slow);
   void Run(StoredJob job);
   // The id of what the job made.
   Result<std::string> Execute(const StoredJob& job, ExecutionContext& context);

@@ -183,7 +183,8 @@ Result<Page<StoredGrasp>> Service::QueryGrasps(
 Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
                                         const std::string& idempotency_key) {
   GRASPDB_TRY(checked, CheckImport(order));
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kImport, ToJson(checked),
+  const bool slow = checked.role == ObjectRole::kExample && checked.learn;
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kImport, slow, ToJson(checked),
                                      checked.bytes, idempotency_key));
   runner_->Wake();
   return job;
@@ -192,7 +193,7 @@ Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
 Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
                                        const std::string& idempotency_key) {
   GRASPDB_TRY_VOID(CheckLearn(order));
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kLearn, ToJson(order), "",
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kLearn, true, ToJson(order), "",
                                      idempotency_key));
   runner_->Wake();
   return job;
@@ -201,7 +202,7 @@ Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
 Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
                                           const std::string& idempotency_key) {
   GRASPDB_TRY(checked, CheckTransfer(order));
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kTransfer, ToJson(checked),
+  GRASPDB_TRY(job, store_->InsertJob(JobKind::kTransfer, false, ToJson(checked),
                                      checked.mesh.bytes, idempotency_key));
   runner_->Wake();
   return job;

@@ -133,8 +133,8 @@ class Service {
   Result<StoredJob> CancelJob(const std::string& id);
 
   /** Queues what a dead process left running and starts the workers: one for
-   transfers, one for imports and learning, so that no transfer waits for
-   minutes. Only a server calls this. */
+   all that learns, one for the rest, so that no transfer waits for minutes.
+   Only a server calls this. */
   Result<void> StartWorkers();
   /** Running jobs go back into the queue; returns when the workers have ended.
    Safe to call twice. */

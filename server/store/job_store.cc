@@ -10,6 +10,8 @@ using store::MakePage;
 using store::Throw;
 using store::Unwrap;
 
+constexpr int kMostAttempts = 3;
+
 constexpr char kJobColumns[] =
     "SELECT id, kind, state, progress, stage, request, result_id, error_code,"
     " error_message, error_hint, error_field, created_at, started_at,"
@@ -52,24 +54,18 @@ std::optional<StoredJob> FindJobByKey(Database& database,
   return MakeJob(row);
 }
 
-// The oldest queued job of one of the kinds; empty when there is none.
-std::string FindQueued(Database& database, const std::vector<JobKind>& kinds) {
-  std::string oldest;
-  for (const JobKind kind : kinds) {
-    Statement row = database.Prepare(
-        "SELECT id FROM jobs WHERE state = 'queued' AND kind = ?"
-        " ORDER BY id LIMIT 1");
-    if (row.Bind(ToString(kind)).Step() &&
-        (oldest.empty() || row.Text(0) < oldest)) {
-      oldest = row.Text(0);
-    }
-  }
-  return oldest;
+// The oldest queued job; empty when there is none.
+std::string FindQueued(Database& database, bool slow) {
+  Statement row = database.Prepare(
+      "SELECT id FROM jobs WHERE state = 'queued' AND slow = ?"
+      " ORDER BY id LIMIT 1");
+  return row.Bind(slow).Step() ? row.Text(0) : std::string();
 }
 
 }  // namespace
 
-Result<StoredJob> Store::InsertJob(JobKind kind, const std::string& request,
+Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
+                                   const std::string& request,
                                    const std::string& payload,
                                    const std::string& idempotency_key) {
   return impl_->Write([&](Database& database) {
@@ -84,10 +80,10 @@ Result<StoredJob> Store::InsertJob(JobKind kind, const std::string& request,
     const std::string id = MakeUuid();
     database
         .Prepare(
-            "INSERT INTO jobs (id, kind, state, request, idempotency_key,"
+            "INSERT INTO jobs (id, kind, state, slow, request, idempotency_key,"
             " progress, stage, created_at, payload)"
-            " VALUES (?, ?, 'queued', ?, ?, 0, '', ?, ?)")
-        .Bind(id, ToString(kind), request)
+            " VALUES (?, ?, 'queued', ?, ?, ?, 0, '', ?, ?)")
+        .Bind(id, ToString(kind), slow, request)
         .BindTextOrNull(idempotency_key)
         .Bind(FormatNow())
         .BindBlob(payload)
@@ -125,20 +121,19 @@ Result<std::string> Store::ReadJobPayload(const std::string& id) const {
   });
 }
 
-Result<std::optional<StoredJob>> Store::ClaimJob(
-    const std::vector<JobKind>& kinds) {
+Result<std::optional<StoredJob>> Store::ClaimJob(bool slow) {
   // Most calls find nothing and need no write.
   const Result<std::string> queued = impl_->Read(
-      [&](Database& database) { return FindQueued(database, kinds); });
+      [&](Database& database) { return FindQueued(database, slow); });
   if (!queued) return queued.error();
   if (queued->empty()) return std::optional<StoredJob>();
   return impl_->Write([&](Database& database) -> std::optional<StoredJob> {
-    const std::string id = FindQueued(database, kinds);
+    const std::string id = FindQueued(database, slow);
     if (id.empty()) return std::nullopt;
     database
         .Prepare(
-            "UPDATE jobs SET state = 'running', started_at = ?, progress = 0"
-            " WHERE id = ?")
+            "UPDATE jobs SET state = 'running', started_at = ?, progress = 0,"
+            " attempts = attempts + 1 WHERE id = ?")
         .Bind(FormatNow(), id)
         .Run();
     return ReadJob(database, id);
@@ -166,11 +161,25 @@ Result<StoredJob> Store::FinishJob(const StoredJob& job) {
   });
 }
 
-Result<int> Store::RequeueRunningJobs() {
+Result<int> Store::RequeueRunningJobs(bool crashed) {
   return impl_->Write([&](Database& database) {
-    database.Execute(
-        "UPDATE jobs SET state = 'queued', progress = 0, stage = '',"
-        " started_at = NULL WHERE state = 'running'");
+    if (crashed) {
+      database
+          .Prepare(
+              "UPDATE jobs SET state = 'failed', error_code = 'internal',"
+              " error_message = 'The server died three times over it.',"
+              " finished_at = ?, payload = NULL"
+              " WHERE state = 'running' AND attempts >= ?")
+          .Bind(FormatNow(), kMostAttempts)
+          .Run();
+    }
+    database
+        .Prepare(
+            "UPDATE jobs SET state = 'queued', progress = 0, stage = '',"
+            " started_at = NULL, attempts = attempts - ?"
+            " WHERE state = 'running'")
+        .Bind(crashed ? 0 : 1)
+        .Run();
     return static_cast<int>(database.Changes());
   });
 }

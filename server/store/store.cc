@@ -438,7 +438,7 @@ StoreCounts CountRows(Database& database) {
   counts.parts = count("parts");
   counts.hands = count("hands");
   counts.grasp_spaces = count("grasp_spaces");
-  counts.grasps = count("grasps");
+  counts.grasps = count("grasps INDEXED BY grasps_of_part");
   counts.transfers = count("transfers");
   counts.jobs_unfinished = count("jobs WHERE state IN ('queued', 'running')");
   return counts;

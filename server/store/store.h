@@ -166,10 +166,13 @@ class Store {
   Result<StoredTransfer> FindTransfer(const std::string& id) const;
 
   // ---- Jobs -----------------------------------------------------------------
-  /** @param idempotency_key  When not empty: a job with the same key is
-   answered instead of a new one.
-   @param payload  The bytes of a mesh; kept until the job ends. */
-  Result<StoredJob> InsertJob(JobKind kind, const std::string& request,
+  /** @param slow  It takes minutes: kept apart from what someone waits for.
+   @param payload  The bytes of a mesh; kept until the job ends.
+   @param idempotency_key  When not empty: a job with the same key is answered
+     instead of a new one. @retval kConflict if that asked for something else.
+ */
+  Result<StoredJob> InsertJob(JobKind kind, bool slow,
+                              const std::string& request,
                               const std::string& payload,
                               const std::string& idempotency_key);
   Result<StoredJob> FindJob(const std::string& id) const;
@@ -177,15 +180,18 @@ class Store {
   Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
                                    const PageRequest& page) const;
   Result<std::string> ReadJobPayload(const std::string& id) const;
-  /** The oldest queued job of one of the kinds becomes running; none when there
-   is none. */
-  Result<std::optional<StoredJob>> ClaimJob(const std::vector<JobKind>& kinds);
+  /** The oldest queued job, slow or not, becomes running; none when there is
+   none. */
+  Result<std::optional<StoredJob>> ClaimJob(bool slow);
   /** Writes how a job ended: state, result or error, times. A job that has
    ended already is left alone. */
   Result<StoredJob> FinishJob(const StoredJob& job);
-  /** Jobs that a dead process left running are queued again.
-   @returns how many. */
-  Result<int> RequeueRunningJobs();
+  /** Puts running jobs back into the queue.
+   @param crashed  They were left by a process that died, perhaps of them: one
+     that was begun three times fails instead. Else they were interrupted in
+     good order, which does not count.
+   @returns how many are queued again. */
+  Result<int> RequeueRunningJobs(bool crashed);
 
   // ---- Idempotency-Key ------------------------------------------------------
   Result<std::optional<StoredReply>> FindReply(const std::string& key) const;

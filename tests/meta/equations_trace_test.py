@@ -39,7 +39,9 @@ class EquationsTraceTest(unittest.TestCase):
         for paper, function, header, _ in read_rows():
             path = ROOT / header
             self.assertTrue(path.exists(), header)
-            last = function.split("::")[-1]
+            *scope, last = function.split("::")
+            for name in scope:
+                self.assertIn(f"class {name} ", path.read_text(encoding="utf-8"))
             self.assertIn((paper, last), find_tags(path),
                           f"{header} does not tag {last} with "
                           f"@paper{{{paper}}}")

@@ -17,7 +17,7 @@ class GripperOnABox : public ::testing::Test {
   const RigidTransform X_OH_{
       Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix(),
       {0, 0, 0.07}};
-  const Parameters parameters_;
+  const Parameters parameters_{};
 };
 
 TEST_F(GripperOnABox, ATextbookGraspIsStable) {

@@ -598,7 +598,7 @@ TEST_F(ServiceTest, AJobThatTheServersEndInterruptedIsDoneByTheNext) {
             JobState::kSucceeded);
 }
 
-TEST_F(ServiceTest, TransfersDoNotWaitForLearning) {
+TEST_F(ServiceTest, TransfersAndImportsDoNotWaitForLearning) {
   const auto service = MakeService(Copy("learned"));
   ASSERT_TRUE(service->StartWorkers());
   LearnOrder lesson;
@@ -606,6 +606,12 @@ TEST_F(ServiceTest, TransfersDoNotWaitForLearning) {
   const auto learning = service->SubmitLearn(lesson).value();
   const auto transfer = service->SubmitTransfer(MakeOrder()).value();
   EXPECT_EQ(service->WaitForJob(transfer.id, seconds(60)).value().state,
+            JobState::kSucceeded);
+  ImportOrder import = MakeNovelOrder("bowl");
+  import.role = ObjectRole::kExample;
+  import.learn = false;
+  const auto imported = service->SubmitImport(import).value();
+  EXPECT_EQ(service->WaitForJob(imported.id, seconds(60)).value().state,
             JobState::kSucceeded);
   EXPECT_FALSE(service->FindJob(learning.id).value().Finished());
 }

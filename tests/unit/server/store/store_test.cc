@@ -402,22 +402,22 @@ TEST_F(StoreTest, NewPartsReplaceTheOldOnesButNotUnderGraspsThatUseThem) {
   EXPECT_EQ(store_->Count().value().grasps, 0);
 }
 
-TEST_F(StoreTest, JobsAreClaimedOnceInOrderAndByKind) {
+TEST_F(StoreTest, JobsAreClaimedOnceInOrderSlowOnesApart) {
   const std::string first =
-      store_->InsertJob(JobKind::kTransfer, "{}", "mesh", "").value().id;
-  store_->InsertJob(JobKind::kLearn, "{}", "", "").value();
+      store_->InsertJob(JobKind::kTransfer, false, "{}", "mesh", "").value().id;
+  store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
   const std::string third =
-      store_->InsertJob(JobKind::kTransfer, "{}", "", "").value().id;
-  const std::vector<JobKind> kinds{JobKind::kTransfer};
-  EXPECT_EQ(store_->ClaimJob(kinds).value()->id, first);
+      store_->InsertJob(JobKind::kTransfer, false, "{}", "", "").value().id;
+  EXPECT_EQ(store_->ClaimJob(false).value()->id, first);
   EXPECT_EQ(store_->ReadJobPayload(first).value(), "mesh");
-  EXPECT_EQ(store_->ClaimJob(kinds).value()->id, third);
-  EXPECT_FALSE(store_->ClaimJob(kinds).value());
+  EXPECT_EQ(store_->ClaimJob(false).value()->id, third);
+  EXPECT_FALSE(store_->ClaimJob(false).value());
   EXPECT_EQ(store_->FindJob(first).value().state, JobState::kRunning);
 }
 
 TEST_F(StoreTest, AJobEndsOnceWithItsErrorAndWithoutItsPayload) {
-  StoredJob job = store_->InsertJob(JobKind::kImport, "{}", "m", "").value();
+  StoredJob job =
+      store_->InsertJob(JobKind::kImport, false, "{}", "m", "").value();
   job.state = JobState::kFailed;
   job.error = Error{ErrorCode::kUnusableInput, "no mesh", "try stl", "format"};
   EXPECT_EQ(store_->FinishJob(job).value().error, job.error);
@@ -427,26 +427,46 @@ TEST_F(StoreTest, AJobEndsOnceWithItsErrorAndWithoutItsPayload) {
 }
 
 TEST_F(StoreTest, JobsThatADeadProcessLeftRunningAreQueuedAgain) {
-  store_->InsertJob(JobKind::kLearn, "{}", "", "").value();
-  store_->ClaimJob({JobKind::kLearn}).value();
+  store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
+  store_->ClaimJob(true).value();
   Reopen();
-  EXPECT_EQ(store_->RequeueRunningJobs().value(), 1);
-  EXPECT_TRUE(store_->ClaimJob({JobKind::kLearn}).value());
+  EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 1);
+  EXPECT_TRUE(store_->ClaimJob(true).value());
+}
+
+TEST_F(StoreTest, AJobThatKilledThreeProcessesFails) {
+  const auto job =
+      store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
+  const auto claim = [&] { return store_->ClaimJob(true).value().has_value(); };
+  for (int i = 0; i < 5; ++i) {  // Interruptions in good order do not count.
+    EXPECT_TRUE(claim());
+    EXPECT_EQ(store_->RequeueRunningJobs(false).value(), 1);
+  }
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(claim());
+    EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 1);
+  }
+  EXPECT_TRUE(claim());
+  EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 0);
+  EXPECT_EQ(store_->FindJob(job.id).value().state, JobState::kFailed);
 }
 
 TEST_F(StoreTest, JobsWithTheSameIdempotencyKeyAreOne) {
-  const auto first = store_->InsertJob(JobKind::kLearn, "{}", "", "k").value();
-  EXPECT_EQ(store_->InsertJob(JobKind::kLearn, "{}", "", "k").value().id,
+  const auto first =
+      store_->InsertJob(JobKind::kLearn, true, "{}", "", "k").value();
+  EXPECT_EQ(store_->InsertJob(JobKind::kLearn, true, "{}", "", "k").value().id,
             first.id);
-  EXPECT_EQ(store_->InsertJob(JobKind::kLearn, "[]", "", "k").error().code,
-            ErrorCode::kConflict);
+  EXPECT_EQ(
+      store_->InsertJob(JobKind::kLearn, true, "[]", "", "k").error().code,
+      ErrorCode::kConflict);
 }
 
 TEST_F(StoreTest, JobsAreListedNewestFirst) {
   std::vector<std::string> ids;
   for (int i = 0; i < 5; ++i) {
-    ids.insert(ids.begin(),
-               store_->InsertJob(JobKind::kLearn, "{}", "", "").value().id);
+    ids.insert(
+        ids.begin(),
+        store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value().id);
   }
   const auto page = store_->ListJobs(std::nullopt, {3, ""}).value();
   ASSERT_THAT(page.items, SizeIs(3));
