@@ -52,6 +52,9 @@ Parameters MakePaperParameters() {
   p.swarm.hold_on_whole = false;
   p.swarm.min_robustness = 0.0;
   p.swarm.patience = p.swarm.iterations;
+  p.mapping.affine = false;
+  p.replan.cycles = 1;
+  p.replan.fit_start = false;
   p.replan.iterations = 300;
   p.replan.patience = 300;
   p.replan.move_wrist = false;

@@ -193,6 +193,7 @@ struct MappingParameters {
   double max_normal_angle{0.5235987755982988};
   int neighbours{6};
   double consistency{0.08};
+  bool affine{true};
   bool scale{false};
 
   template <class Self, class F>
@@ -207,6 +208,9 @@ struct MappingParameters {
       ParameterInfo{"1", 1, 100, "ours: |A_x| of Eq. (4)"});
     f("consistency", self.consistency,
       ParameterInfo{"1", 1e-4, 1, "ours: gamma as a share of the diagonal"});
+    f("affine", self.affine,
+      ParameterInfo{"1", 0, 1,
+                    "ours: contacts map under an affine refinement of T*"});
     f("scale", self.scale,
       ParameterInfo{"1", 0, 1, "ours: similarity; the paper is rigid"});
   }
@@ -223,6 +227,8 @@ struct ReplanParameters {
   double joint_range{0.35};
   int iterations{60};
   int patience{15};
+  int cycles{4};
+  bool fit_start{true};
   int extra_samples{20};
   double initial_temperature{10.0};
   double final_temperature{0.1};
@@ -248,6 +254,11 @@ struct ReplanParameters {
     f("iterations", self.iterations, ParameterInfo{"1", 0, 1e6, "ours"});
     f("patience", self.patience,
       ParameterInfo{"1", 1, 1e6, "ours: stop after so many without gain"});
+    f("cycles", self.cycles,
+      ParameterInfo{"1", 1, 1000, "ours: annealings at most, until one finds"});
+    f("fit_start", self.fit_start,
+      ParameterInfo{"1", 0, 1,
+                    "ours: starts from a least-squares fit, too; paper: T*"});
     f("extra_samples", self.extra_samples,
       ParameterInfo{"1", 0, 1000, "paper Sec. V-B: 20 more when in collision"});
     f("initial_temperature", self.initial_temperature,

@@ -1,13 +1,27 @@
 #include "engine/geometry/distance_field.h"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <tbb/parallel_for.h>
 
 #include "engine/base/contract.h"
 
 namespace graspdb {
+namespace {
+
+// Every so many nodes are computed first; the rest only near the surface.
+constexpr int kCoarse = 2;
+
+// @param reach  No point of the surface farther than this matters.
+float CalcSigned(const SurfaceIndex& index_M, const Eigen::Vector3d& p_M,
+                 double reach) {
+  const ClosestPoint c = *index_M.FindClosest(p_M, reach);
+  const bool outside = (p_M - c.p_M).dot(c.pseudonormal) >= 0.0;
+  return static_cast<float>(outside ? c.distance : -c.distance);
+}
+
+}  // namespace
 
 DistanceField::DistanceField(const TriangleMesh& mesh_M,
                              const SurfaceIndex& index_M, int cells,
@@ -21,50 +35,63 @@ DistanceField::DistanceField(const TriangleMesh& mesh_M,
   max_error_ = 0.5 * std::sqrt(3.0) * cell_;
   origin_ = mesh_M.box_min() - Eigen::Vector3d::Constant(margin);
   for (int k = 0; k < 3; ++k) {
-    count_[k] = static_cast<int>(std::ceil(size[k] * inverse_cell_)) + 1;
-    top_[k] = origin_[k] + cell_ * (count_[k] - 1);
+    count_[k] = kCoarse * static_cast<int>(
+                              std::ceil(size[k] * inverse_cell_ / kCoarse)) +
+                1;
+    last_[k] = count_[k] - 1;
   }
-  values_.resize(static_cast<size_t>(count_[0]) * count_[1] * count_[2]);
-  tbb::parallel_for(0, count_[2], [&](int iz) {
-    size_t i = static_cast<size_t>(iz) * count_[0] * count_[1];
-    for (int iy = 0; iy < count_[1]; ++iy) {
-      // The neighbour's value bounds the search: one is a cell away at most.
+  stride_y_ = static_cast<size_t>(count_[0]);
+  stride_z_ = stride_y_ * count_[1];
+  values_.resize(stride_z_ * count_[2]);
+  FillCoarse(index_M);
+  FillRest(index_M);
+}
+
+void DistanceField::FillCoarse(const SurfaceIndex& index_M) {
+  tbb::parallel_for(0, (count_[2] + 1) / kCoarse, [&](int slice) {
+    const int iz = kCoarse * slice;
+    for (int iy = 0; iy < count_[1]; iy += kCoarse) {
+      // The neighbour's value bounds the search.
       double reach = std::numeric_limits<double>::infinity();
-      for (int ix = 0; ix < count_[0]; ++ix, ++i) {
-        const Eigen::Vector3d p = origin_ + cell_ * Eigen::Vector3d(ix, iy, iz);
-        const ClosestPoint c = *index_M.FindClosest(p, reach);
-        const bool outside = (p - c.p_M).dot(c.pseudonormal) >= 0.0;
-        values_[i] = static_cast<float>(outside ? c.distance : -c.distance);
-        reach = c.distance + 1.001 * cell_;
+      for (int ix = 0; ix < count_[0]; ix += kCoarse) {
+        at(ix, iy, iz) = CalcSigned(index_M, CalcNode(ix, iy, iz), reach);
+        reach = std::abs(at(ix, iy, iz)) + 1.001 * kCoarse * cell_;
       }
     }
   });
 }
 
-double DistanceField::Calc(const Eigen::Vector3d& p_M) const {
-  const Eigen::Vector3d inside = p_M.cwiseMax(origin_).cwiseMin(top_);
-  const Eigen::Vector3d u = (inside - origin_) * inverse_cell_;
-  std::array<int, 3> i;
-  std::array<double, 3> t;
-  for (int k = 0; k < 3; ++k) {
-    i[k] = std::min(static_cast<int>(u[k]), count_[k] - 2);
-    t[k] = u[k] - i[k];
-  }
-  const size_t nx = count_[0];
-  const size_t nxy = nx * count_[1];
-  const float* v = &values_[i[0] + nx * i[1] + nxy * i[2]];
-  const auto along_x = [&t](const float* row) {
-    return row[0] + t[0] * (static_cast<double>(row[1]) - row[0]);
-  };
-  const double y0 = along_x(v) + t[1] * (along_x(v + nx) - along_x(v));
-  const double y1 =
-      along_x(v + nxy) + t[1] * (along_x(v + nxy + nx) - along_x(v + nxy));
-  const double value = y0 + t[2] * (y1 - y0);
+void DistanceField::FillRest(const SurfaceIndex& index_M) {
+  // A point one cell from the surface, its cell's corners, their coarse nodes.
+  const double band = (1.0 + 2.0 * std::sqrt(3.0)) * cell_;
+  tbb::parallel_for(0, count_[2], [&](int iz) {
+    for (int iy = 0; iy < count_[1]; ++iy) {
+      for (int ix = 0; ix < count_[0]; ++ix) {
+        const std::array<int, 3> odd{ix % kCoarse, iy % kCoarse, iz % kCoarse};
+        if (odd == std::array<int, 3>{}) continue;
+        // The nearest coarse node before it, with its distance in cells.
+        const double near = at(ix - odd[0], iy - odd[1], iz - odd[2]);
+        const double apart =
+            cell_ * std::sqrt(static_cast<double>(odd[0] + odd[1] + odd[2]));
+        at(ix, iy, iz) =
+            std::abs(near) > band
+                ? static_cast<float>(near - apart)
+                : CalcSigned(index_M, CalcNode(ix, iy, iz),
+                             1.001 * (std::abs(near) + apart) + 1e-9);
+      }
+    }
+  });
+}
+
+double DistanceField::CalcOutside(const Eigen::Vector3d& p_M) const {
+  const Eigen::Vector3d inside =
+      p_M.cwiseMax(origin_).cwiseMin(origin_ + cell_ * last_);
   const double beyond = (p_M - inside).norm();
-  if (beyond == 0.0) return value;
+  const Eigen::Vector3d u =
+      ((inside - origin_) * inverse_cell_).cwiseMax(0.0).cwiseMin(last_);
   // Both are proven: the mesh ends margin_ before the grid does, and distance
   // has Lipschitz constant one.
-  return std::max(beyond + margin_, value - beyond);
+  return std::max(beyond + margin_, Interpolate(u) - beyond);
 }
 
 }  // namespace graspdb

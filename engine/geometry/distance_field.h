@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -21,10 +22,16 @@ class DistanceField {
   DistanceField(const TriangleMesh& mesh_M, const SurfaceIndex& index_M,
                 int cells, double margin);
 
-  /** The signed distance at p, m; negative inside. Within the grid it differs
-   from the true one by at most max_error(); outside the grid the true one is
-   no smaller than this, less max_error(). */
-  double Calc(const Eigen::Vector3d& p_M) const;
+  /** The signed distance at p, m; negative inside. The true one is nowhere
+   smaller than this, less max_error(); within a cell of the surface it is no
+   larger than this, plus max_error(), either. */
+  double Calc(const Eigen::Vector3d& p_M) const {
+    const Eigen::Vector3d u = (p_M - origin_) * inverse_cell_;
+    if (!(u.minCoeff() >= 0.0 && (u.array() <= last_.array()).all())) {
+      return CalcOutside(p_M);
+    }
+    return Interpolate(u);
+  }
 
   /** A proven bound of the interpolation's error: distance has Lipschitz
    constant one, so the error is at most the weighted mean distance to the
@@ -34,13 +41,45 @@ class DistanceField {
   double cell_size() const { return cell_; }
 
  private:
-  std::array<int, 3> count_{};
+  // At u cells from the origin, within the grid.
+  double Interpolate(const Eigen::Vector3d& u) const {
+    std::array<int, 3> i;
+    std::array<float, 3> t;
+    for (int k = 0; k < 3; ++k) {
+      i[k] = std::min(static_cast<int>(u[k]), count_[k] - 2);
+      t[k] = static_cast<float>(u[k] - i[k]);
+    }
+    const float* v = &values_[i[0] + stride_y_ * i[1] + stride_z_ * i[2]];
+    const auto along_x = [&t](const float* row) {
+      return row[0] + t[0] * (row[1] - row[0]);
+    };
+    const auto along_xy = [&](const float* slice) {
+      const float low = along_x(slice);
+      return low + t[1] * (along_x(slice + stride_y_) - low);
+    };
+    const float low = along_xy(v);
+    return low + t[2] * (along_xy(v + stride_z_) - low);
+  }
+
+  double CalcOutside(const Eigen::Vector3d& p_M) const;
+  void FillCoarse(const SurfaceIndex& index_M);
+  void FillRest(const SurfaceIndex& index_M);
+  float& at(int ix, int iy, int iz) {
+    return values_[ix + stride_y_ * iy + stride_z_ * iz];
+  }
+  Eigen::Vector3d CalcNode(int ix, int iy, int iz) const {
+    return origin_ + cell_ * Eigen::Vector3d(ix, iy, iz);
+  }
+
+  std::array<int, 3> count_{};  // Nodes; odd, so that coarse ones fit.
   Eigen::Vector3d origin_;
-  Eigen::Vector3d top_;
+  Eigen::Vector3d last_;  // The last node, in cells.
   double margin_{0.0};
   double cell_{0.0};
   double inverse_cell_{0.0};
   double max_error_{0.0};
+  size_t stride_y_{0};
+  size_t stride_z_{0};
   std::vector<float> values_;
 };
 

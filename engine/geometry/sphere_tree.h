@@ -1,70 +1,64 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "engine/geometry/triangle_mesh.h"
+#include "engine/math/rigid_transform.h"
 
 namespace graspdb {
 
-/** A small flat triangle of a surface: all of it lies within radius of p_L. */
-struct SurfacePatch {
-  std::array<Eigen::Vector3d, 3> corners_L;  ///< m.
-  Eigen::Vector3d p_L;                       ///< Its centroid, m.
-  double radius{0.0};                        ///< m.
-};
-
-SurfacePatch MakeSurfacePatch(const std::array<Eigen::Vector3d, 3>& corners_L);
-
-/** Both halves of a patch, cut through the middle of its longest edge. */
-std::array<SurfacePatch, 2> SplitPatch(const SurfacePatch& patch);
-
-/** A hierarchy of spheres that covers a surface. With a distance function of
- the other body, which must have Lipschitz constant one, it bounds the gap
- between two bodies from below without missing anything in between. */
+/** A hierarchy of balls that covers a surface, with probe points spread over
+ it. With a distance function of the other body, which must have Lipschitz
+ constant one, it bounds the gap between two bodies from below without missing
+ anything in between, and estimates it from the probes. */
 class SphereTree {
  public:
-  /** Cuts the surface into patches of at most max_radius, m.
-   @pre The mesh has a face; max_radius > 0. */
-  SphereTree(const TriangleMesh& mesh_L, double max_radius);
+  /** @param spacing  Of the probes, roughly, m; every corner of the mesh is or
+     is near to one.
+   @pre The mesh has a face; spacing > 0. */
+  SphereTree(const TriangleMesh& mesh_L, double spacing);
 
-  /** Patches, grouped so that neighbours are close to each other. */
-  const std::vector<SurfacePatch>& patches() const { return patches_; }
+  /** Points of the surface, grouped so that neighbours are close, m. */
+  const std::vector<Eigen::Vector3d>& probes() const { return probes_; }
 
-  /** The sphere around everything. */
+  /** The ball around everything. */
   const Eigen::Vector3d& center() const { return nodes_[0].center; }
   double radius() const { return nodes_[0].radius; }
 
   /** A lower bound of the least distance of the surface, as told by
-   `distance(p_L)`, tight to a quarter of it or to twice the patches' radius,
-   whichever is more. Once it is known to be below `enough`, any value below
-   that is returned. */
+   `distance(p_L)`, tight to half of it or to twice the smallest balls'
+   radius, whichever is more. Once it is known to be below `enough`, any value
+   below that is returned. */
   template <class DistanceFunction>
   double CalcLowerBound(const DistanceFunction& distance, double enough) const {
-    return Minimise(distance, enough,
-                    [&](const SurfacePatch& patch, double& best) {
-                      const double bound = distance(patch.p_L) - patch.radius;
-                      best = bound < best ? bound : best;
-                    });
+    return Minimise(distance, enough, [&](const Node& node, double& best) {
+      const double bound = distance(node.center) - node.radius;
+      best = bound < best ? bound : best;
+    });
   }
 
-  /** The least distance of the surface, estimated: patches that matter are
-   split until their radius is at most `finest` and then stand for their
-   centres, so that it may be too large by `finest`, less on smooth surfaces,
-   and too small by a quarter. */
+  /** The least distance of the surface, estimated by its probes: too large by
+   what the surface bulges between them, and too small by half far away. Once
+   it is known to be below `enough`, any value below that is returned. */
   template <class DistanceFunction>
   double EstimateMinimum(const DistanceFunction& distance,
-                         double finest) const {
-    return Minimise(distance, -1e300,
-                    [&](const SurfacePatch& patch, double& best) {
-                      LowerByPatch(distance, patch, finest, best);
-                    });
+                         double enough) const {
+    return Minimise(distance, enough, [&](const Node& node, double& best) {
+      for (int i = 0; i < node.num_probes; ++i) {
+        const double d = distance(probes_[node.first + i]);
+        best = d < best ? d : best;
+      }
+    });
   }
 
-  /** Calls visit(patch) for each patch of which some point may be nearer than
-   `limit`. */
+  /** A lower bound of the gap between this surface A and another one, B. Once
+   it is known to be below `enough`, any value below that is returned. */
+  double CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
+                      double enough) const;
+
+  /** Calls visit(p_L) for each probe nearer than `limit`, in order. */
   template <class DistanceFunction, class Visitor>
   void VisitNear(const DistanceFunction& distance, double limit,
                  const Visitor& visit) const {
@@ -74,13 +68,13 @@ class SphereTree {
     while (size > 0) {
       const Node& node = nodes_[stack[--size]];
       if (distance(node.center) - node.radius > limit) continue;
-      if (node.num_patches > 0) {
-        for (int i = 0; i < node.num_patches; ++i) {
-          const SurfacePatch& patch = patches_[node.first + i];
-          if (distance(patch.p_L) - patch.radius <= limit) visit(patch);
+      if (node.num_probes > 0) {
+        for (int i = 0; i < node.num_probes; ++i) {
+          const Eigen::Vector3d& p_L = probes_[node.first + i];
+          if (distance(p_L) <= limit) visit(p_L);
         }
       } else {
-        // The second child goes first onto the stack: patches come in order.
+        // The second child goes first onto the stack: probes come in order.
         stack[size++] = node.first + 1;
         stack[size++] = node.first;
       }
@@ -91,11 +85,11 @@ class SphereTree {
   struct Node {
     Eigen::Vector3d center;
     double radius{0.0};
-    int first{0};        // First patch of a leaf, or first of two children.
-    int num_patches{0};  // 0 for an inner node.
+    int first{0};       // First probe of a leaf, or first of two children.
+    int num_probes{0};  // 0 for an inner node.
   };
 
-  // Branch and bound; `lower(patch, best)` lowers the best by a patch.
+  // Branch and bound; `lower(leaf, best)` lowers the best by a leaf.
   template <class DistanceFunction, class LowerByLeaf>
   double Minimise(const DistanceFunction& distance, double enough,
                   const LowerByLeaf& lower) const {
@@ -111,7 +105,7 @@ class SphereTree {
       const double d = distance(node.center);
       const double bound = d - node.radius;
       // Far enough for its size: looking closer would gain little.
-      if (node.radius <= 0.25 * d) {
+      if (node.radius <= 0.5 * d) {
         best = bound < best ? bound : best;
         return Entry{i, 1e300};
       }
@@ -122,10 +116,8 @@ class SphereTree {
       const Entry top = stack[--size];
       if (top.bound >= best) continue;
       const Node& node = nodes_[top.node];
-      if (node.num_patches > 0) {
-        for (int i = 0; i < node.num_patches; ++i) {
-          lower(patches_[node.first + i], best);
-        }
+      if (node.num_probes > 0) {
+        lower(node, best);
         if (best < enough) return best;
         continue;
       }
@@ -138,26 +130,17 @@ class SphereTree {
     return best;
   }
 
-  template <class DistanceFunction>
-  static void LowerByPatch(const DistanceFunction& distance,
-                           const SurfacePatch& patch, double finest,
-                           double& best) {
-    const double d = distance(patch.p_L);
-    const double bound = d - patch.radius;
-    if (bound >= best) return;
-    if (patch.radius <= finest || patch.radius <= 0.25 * d) {
-      const double value = patch.radius <= finest ? d : bound;
-      best = value < best ? value : best;
-      return;
-    }
-    for (const SurfacePatch& half : SplitPatch(patch)) {
-      LowerByPatch(distance, half, finest, best);
-    }
-  }
+  // A probe while building: all of the surface that it stands for lies within
+  // `radius` of it.
+  struct Ball {
+    Eigen::Vector3d p;
+    double radius{0.0};
+  };
+  static std::vector<Ball> SpreadProbes(const TriangleMesh& mesh_L,
+                                        double spacing);
+  void Build(int node, int first, int count, std::vector<Ball>& balls);
 
-  void Build(int node, int first, int count);
-
-  std::vector<SurfacePatch> patches_;
+  std::vector<Eigen::Vector3d> probes_;
   std::vector<Node> nodes_;
 };
 

@@ -13,9 +13,13 @@
 namespace graspdb {
 namespace {
 
-// One device for the process: Embree's own advice. It holds no scene data.
+// Faces that meet at less than this belong to one plane.
+constexpr double kFlatCosine = 1.0 - 1e-9;
+
+// One device for the process: Embree's own advice. It holds no scene data. A
+// limit on its threads would be one on TBB's in the whole process.
 RTCDevice GetDevice() {
-  static const RTCDevice device = rtcNewDevice("threads=1");
+  static const RTCDevice device = rtcNewDevice(nullptr);
   return device;
 }
 
@@ -149,7 +153,7 @@ bool VisitTriangle(RTCPointQueryFunctionArguments* arguments) {
                             state.mesh->corner(f, 1), state.mesh->corner(f, 2));
   const double squared = (state.p - candidate.p).squaredNorm();
   if (squared > state.best_squared ||
-      (squared == state.best_squared && state.face >= 0)) {
+      (squared == state.best_squared && state.face >= 0 && f > state.face)) {
     return false;
   }
   state.best_squared = squared;
@@ -210,9 +214,13 @@ std::optional<ClosestPoint> SurfaceIndex::FindClosest(
   rtcInitPointQueryContext(&context);
   rtcPointQuery(impl_->scene, &query, &context, nullptr, &state);
   if (state.face < 0) return std::nullopt;
+  const Eigen::Vector3d pseudonormal =
+      impl_->CalcPseudonormal(state.face, state.point.feature);
+  const bool on_face =
+      state.point.feature == Feature::kFace ||
+      pseudonormal.dot(impl_->mesh.normal(state.face)) > kFlatCosine;
   return ClosestPoint{std::sqrt(state.best_squared), state.point.p, state.face,
-                      impl_->CalcPseudonormal(state.face, state.point.feature),
-                      state.point.feature == Feature::kFace};
+                      pseudonormal, on_face};
 }
 
 double SurfaceIndex::CalcSignedDistance(const Eigen::Vector3d& p_M) const {

@@ -18,7 +18,8 @@ struct ClosestPoint {
   /** The angle-weighted pseudonormal of the face, edge or vertex that the point
    lies on (Baerentzen and Aanaes 2005); unit length, out of the solid. */
   Eigen::Vector3d pseudonormal{Eigen::Vector3d::UnitZ()};
-  bool on_face{true};  ///< False when it lies on an edge or a vertex.
+  /** False when it lies on an edge or a vertex, unless all is flat there. */
+  bool on_face{true};
 };
 
 /** Closest points and inside tests on a mesh, through Embree's tree; exact in
@@ -31,8 +32,7 @@ class SurfaceIndex {
   SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
 
   /** The closest surface point no farther than max_distance; nothing when there
-   is none. Ties go to the face that the tree meets first, the same each
-   time. */
+   is none. Ties go to the first face. */
   std::optional<ClosestPoint> FindClosest(
       const Eigen::Vector3d& p_M,
       double max_distance = std::numeric_limits<double>::infinity()) const;

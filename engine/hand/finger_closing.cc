@@ -15,11 +15,17 @@ constexpr double kContactGap = 0.0001;
 // Should the exact test then find a collision, the link backs off by this much
 // at a time, metres of motion.
 constexpr double kBackOff = 0.0001;
-// Moments of self-collision are found to this motion, metres.
+// A link may run so far into the object before the march turns back: less than
+// the thinnest wall, so that none is passed through, metres.
+constexpr double kOvershoot = 0.001;
+// Where a finger meets the object is found to this motion, metres; where it
+// meets another one, less matters.
 constexpr double kContactMotion = 0.00003;
+constexpr double kSelfContactMotion = 0.0001;
 // Fingers, about 20 mm thick, are tested against each other at least this
-// often, metres of motion.
+// often, metres of motion; estimates may miss one that cuts a corner.
 constexpr double kSelfCollisionStep = 0.010;
+constexpr double kRoughSelfCollisionStep = 0.040;
 
 // A finger's joints as a function of its motor's travel: linear between knots.
 struct FingerPath {
@@ -54,48 +60,60 @@ struct FingerPath {
 class FingerMarch {
  public:
   FingerMarch(const HandShape& hand, const RigidTransform& X_OH,
-              const Solid& solid, int actuator, Eigen::VectorXd q)
+              const Solid& solid, int actuator, const Eigen::VectorXd& q,
+              Precision precision)
       : hand_(hand),
         model_(hand.model()),
         X_OH_(X_OH),
         solid_(solid),
         actuator_(actuator),
         chain_(model_.actuators()[actuator].joints),
-        q_(std::move(q)),
+        precision_(precision),
+        q_(q),
         speed_(chain_.size()) {}
 
   FingerPath Run() {
     AddKnot();
-    while (UpdateSpeeds()) {
-      const double limit = FindLimitStep();
-      const Step step = FindStep();
-      if (step.travel >= limit && step.touching < 0) {
-        Advance(limit);
-        break;
-      }
-      if (step.touching < 0) {
-        Advance(step.travel);
-        continue;
-      }
-      BackOff();
+    while (StartPhase()) {
+      const int touching = MarchToContact(travel_ + FindLimitStep());
+      if (touching < 0) break;
+      if (precision_ == Precision::kExact) BackOff();
       AddKnot();
-      blocked_ = step.touching + 1;
+      blocked_ = touching + 1;
     }
     AddKnot();
     return std::move(path_);
   }
 
  private:
+  // A link that moves in this phase.
+  struct Mover {
+    int link;
+    int k;                  // The chain's joint that carries it.
+    double speed;           // At most, metres per motor travel.
+    double known_free;      // The last motor travel at which it was seen free.
+    double certainly_free;  // And the one up to which it must be looked at.
+  };
+
   // Sets each joint's speed per motor travel; false when nothing moves.
-  bool UpdateSpeeds() {
-    bool moving = false;
-    for (int k = 0; k < static_cast<int>(chain_.size()); ++k) {
+  bool StartPhase() {
+    for (size_t k = 0; k < chain_.size(); ++k) {
       const HandJoint& joint = model_.joints()[chain_[k]];
       const double ratio = blocked_ == 0 ? joint.ratio : joint.breakaway_ratio;
-      speed_[k] = k < blocked_ ? 0.0 : ratio;
-      moving = moving || speed_[k] > 0.0;
+      speed_[k] = static_cast<int>(k) < blocked_ ? 0.0 : ratio;
     }
-    return moving;
+    movers_.clear();
+    for (int k = blocked_; k < static_cast<int>(chain_.size()); ++k) {
+      for (const int link : hand_.chain_links(actuator_, k)) {
+        if (!hand_.link(link)) continue;
+        double speed = 0.0;
+        for (int i = 0; i <= k; ++i) {
+          speed += speed_[i] * hand_.motion_bound(link, chain_[i]);
+        }
+        if (speed > 0.0) movers_.push_back({link, k, speed, travel_, travel_});
+      }
+    }
+    return !movers_.empty();
   }
 
   // Motor travel until the first joint limit.
@@ -111,62 +129,101 @@ class FingerMarch {
     return std::max(0.0, travel);
   }
 
-  struct Step {
-    double travel{0.0};  // Motor travel that leads no link to the object.
-    int touching{-1};    // The most proximal moving joint whose link touches.
-  };
-
-  Step FindStep() {
-    const std::vector<RigidTransform> X_HL = CalcLinkPoses(model_, q_);
-    Step step{std::numeric_limits<double>::infinity(), -1};
-    speed_bound_ = 0.0;
-    for (int k = blocked_; k < static_cast<int>(chain_.size()); ++k) {
-      double speed = 0.0;
-      for (const int link : hand_.chain_links(actuator_, k)) {
-        if (!hand_.link(link)) continue;
-        for (int i = 0; i <= k; ++i) {
-          speed += speed_[i] * hand_.motion_bound(link, chain_[i]);
-        }
-        if (speed == 0.0) continue;
-        const double gap =
-            EstimateGap(*hand_.link(link), X_OH_ * X_HL[link], solid_);
-        if (gap <= 2.0 * kContactGap && step.touching < 0) step.touching = k;
-        step.travel = std::min(
-            step.travel, std::max(gap - kContactGap, kContactGap) / speed);
+  // Moves on until a link touches; the joint that carries it, or -1 at the end.
+  // Each link is looked at only when it may have come near.
+  int MarchToContact(double end) {
+    while (true) {
+      Mover& next = *std::min_element(
+          movers_.begin(), movers_.end(), [](const Mover& a, const Mover& b) {
+            return a.certainly_free < b.certainly_free;
+          });
+      const bool at_end = next.certainly_free >= end;
+      MoveTo(at_end ? end : next.certainly_free);
+      const double gap = CalcGap(next);
+      if (gap > kContactGap) {
+        if (at_end) return -1;
+        next.known_free = travel_;
+        next.certainly_free = travel_ + (gap + kOvershoot) / next.speed;
+        continue;
       }
-      speed_bound_ = std::max(speed_bound_, speed);
+      FindContact(next, gap);
+      int k = next.k;
+      for (const Mover& other : movers_) {
+        if (other.k < k && CalcGap(other) <= 2.0 * kContactGap) k = other.k;
+      }
+      return k;
     }
-    return step;
+  }
+
+  // Between where the link was free and here, where it touches or has gone too
+  // far: the travel at which it touches. Regula falsi, Illinois variant.
+  void FindContact(const Mover& mover, double gap) {
+    double low = mover.known_free, high = travel_;
+    double excess_low = 0.0, excess_high = gap - kContactGap;
+    if (gap < 0.0 && low < high) {
+      MoveTo(low);
+      excess_low = CalcGap(mover) - kContactGap;
+      for (int side = 0;
+           (high - low) * mover.speed > kContactMotion && excess_low > 0.0;) {
+        const double share = excess_low / (excess_low - excess_high);
+        MoveTo(low + std::clamp(share, 0.05, 0.95) * (high - low));
+        const double excess = CalcGap(mover) - kContactGap;
+        if (std::abs(excess) <= 0.5 * kContactGap) return;
+        if (excess > 0.0) {
+          low = travel_;
+          excess_low = excess;
+          if (side == 1) excess_high *= 0.5;
+          side = 1;
+        } else {
+          high = travel_;
+          excess_high = excess;
+          if (side == -1) excess_low *= 0.5;
+          side = -1;
+        }
+      }
+      MoveTo(low);
+    }
+  }
+
+  double CalcGap(const Mover& mover) const {
+    return EstimateGap(*hand_.link(mover.link),
+                       X_OH_ * CalcLinkPose(model_, q_, mover.link), solid_);
   }
 
   bool Collides() const {
-    const std::vector<RigidTransform> X_HL = CalcLinkPoses(model_, q_);
-    for (int k = blocked_; k < static_cast<int>(chain_.size()); ++k) {
-      for (const int link : hand_.chain_links(actuator_, k)) {
-        if (hand_.link(link) &&
-            LinkCollides(*hand_.link(link), X_OH_ * X_HL[link], solid_)) {
-          return true;
-        }
-      }
-    }
-    return false;
+    return std::any_of(
+        movers_.begin(), movers_.end(), [this](const Mover& mover) {
+          return LinkCollides(*hand_.link(mover.link),
+                              X_OH_ * CalcLinkPose(model_, q_, mover.link),
+                              solid_);
+        });
   }
 
-  // Until the exact test finds the moving links free; to the last knot at most,
-  // which is known to be.
+  // To where the exact test finds the moving links free, but not by more than
+  // kBackOff; to the last knot at most, which is known to be free.
   void BackOff() {
+    double speed = 0.0;
+    for (const Mover& mover : movers_) speed = std::max(speed, mover.speed);
+    const double step = kBackOff / speed;
     const double known = path_.knots.back().travel;
-    for (double back = kBackOff / speed_bound_; travel_ > known && Collides();
-         back *= 2.0) {
-      Advance(std::max(-back, known - travel_));
+    double colliding = travel_;
+    for (double back = step; travel_ > known && Collides(); back *= 2.0) {
+      colliding = travel_;
+      MoveTo(std::max(known, travel_ - back));
     }
+    double free = travel_;
+    while (colliding - free > step) {
+      MoveTo(0.5 * (free + colliding));
+      (Collides() ? colliding : free) = travel_;
+    }
+    MoveTo(free);
   }
 
-  void Advance(double travel) {
+  void MoveTo(double travel) {
     for (size_t k = 0; k < chain_.size(); ++k) {
-      q_[chain_[k]] += speed_[k] * travel;
+      q_[chain_[k]] += speed_[k] * (travel - travel_);
     }
-    travel_ += travel;
+    travel_ = travel;
   }
 
   void AddKnot() {
@@ -181,9 +238,10 @@ class FingerMarch {
   const Solid& solid_;
   const int actuator_;
   const std::vector<int>& chain_;
+  const Precision precision_;
   Eigen::VectorXd q_;
   std::vector<double> speed_;
-  double speed_bound_{0.0};  // Of the links, metres per motor travel.
+  std::vector<Mover> movers_;
   double travel_{0.0};
   int blocked_{0};  // So many joints of the chain have stopped.
   FingerPath path_;
@@ -209,7 +267,7 @@ class HandMotion {
   }
 
   // Stops fingers where they meet each other or the palm.
-  void StopAtSelfCollisions() {
+  void StopAtSelfCollisions(double max_step) {
     double end = 0.0;
     double speed = 0.0;
     for (const Finger& finger : fingers_) {
@@ -223,7 +281,7 @@ class HandMotion {
       }
     }
     if (speed == 0.0 || end == 0.0) return;
-    const double step = kSelfCollisionStep / speed;
+    const double step = max_step / speed;
     double free = 0.0;
     while (free < end) {
       const double travel = std::min(end, free + step);
@@ -233,7 +291,7 @@ class HandMotion {
       }
       double low = free;
       double high = travel;
-      while ((high - low) * speed > kContactMotion) {
+      while ((high - low) * speed > kSelfContactMotion) {
         const double middle = 0.5 * (low + high);
         (FindCollision(middle) ? high : low) = middle;
       }
@@ -282,16 +340,19 @@ class HandMotion {
 }  // namespace
 
 Eigen::VectorXd CloseFingers(const HandShape& hand, const RigidTransform& X_OH,
-                             const Eigen::VectorXd& q_start,
-                             const Solid& solid) {
+                             const Eigen::VectorXd& q_start, const Solid& solid,
+                             Precision precision) {
   const HandModel& model = hand.model();
   GRASPDB_EXPECTS(q_start.size() == model.num_joints());
   HandMotion motion(hand, q_start);
   for (int a = 0; a < model.num_actuators(); ++a) {
     if (!model.actuators()[a].closes) continue;
-    motion.AddFinger(a, FingerMarch(hand, X_OH, solid, a, q_start).Run());
+    motion.AddFinger(
+        a, FingerMarch(hand, X_OH, solid, a, q_start, precision).Run());
   }
-  motion.StopAtSelfCollisions();
+  motion.StopAtSelfCollisions(precision == Precision::kExact
+                                  ? kSelfCollisionStep
+                                  : kRoughSelfCollisionStep);
   return motion.CalcJoints(std::numeric_limits<double>::infinity());
 }
 

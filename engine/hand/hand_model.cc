@@ -81,4 +81,14 @@ std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
   return X_HL;
 }
 
+RigidTransform CalcLinkPose(const HandModel& hand, const Eigen::VectorXd& q,
+                            int link) {
+  RigidTransform X_HL;
+  for (int i = link; i > 0; i = hand.links()[i].parent) {
+    const HandJoint& joint = hand.joints()[hand.links()[i].joint];
+    X_HL = joint.X_PJ * CalcJointMotion(joint, q[hand.links()[i].joint]) * X_HL;
+  }
+  return X_HL;
+}
+
 }  // namespace graspdb

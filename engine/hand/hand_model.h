@@ -122,4 +122,8 @@ struct HandConfiguration {
 std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
                                           const Eigen::VectorXd& q);
 
+/** X_HL of one link. @pre q.size() == num_joints(). */
+RigidTransform CalcLinkPose(const HandModel& hand, const Eigen::VectorXd& q,
+                            int link);
+
 }  // namespace graspdb

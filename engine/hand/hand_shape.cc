@@ -8,10 +8,9 @@
 namespace graspdb {
 namespace {
 
-// As coarse as the distance field's error: finer patches would prove no more.
-constexpr double kPatchRadius = 0.0015;
-// Estimates look closer.
-constexpr double kEstimateRadius = 0.0003;
+// Between the probes of a link, metres: it bulges by a tenth of a millimetre
+// there at most.
+constexpr double kProbeSpacing = 0.002;
 
 // The joints of `link` and its ancestors, the nearest first.
 std::vector<int> ListJointsTowardsBase(const HandModel& hand, int link) {
@@ -34,7 +33,7 @@ HandShape::HandShape(std::shared_ptr<const HandModel> model)
   for (int i = 0; i < hand.num_links(); ++i) {
     TriangleMesh mesh = CalcUnion(hand.links()[i].pieces_L);
     if (mesh.num_triangles() == 0) continue;
-    SphereTree tree(mesh, kPatchRadius);
+    SphereTree tree(mesh, kProbeSpacing);
     SurfaceIndex index(mesh);
     CollisionShape shape(mesh);
     // Radius about the nearest joint's origin, then about its ancestors': each
@@ -81,12 +80,12 @@ double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
 }
 
 double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
-                   const Solid& solid) {
+                   const Solid& solid, double enough) {
   return link.tree.EstimateMinimum(
       [&](const Eigen::Vector3d& p_L) {
         return solid.field().Calc(X_OL * p_L);
       },
-      kEstimateRadius);
+      enough);
 }
 
 bool LinkCollides(const LinkShape& link, const RigidTransform& X_OL,
@@ -94,7 +93,7 @@ bool LinkCollides(const LinkShape& link, const RigidTransform& X_OL,
   if (CalcGapBound(link, X_OL, solid, 0.0) > 0.0) return false;
   if (solid.shape().Intersects(link.shape, X_OL)) return true;
   // No surfaces cross: either free, or wholly inside.
-  const Eigen::Vector3d p_O = X_OL * link.tree.patches()[0].p_L;
+  const Eigen::Vector3d p_O = X_OL * link.tree.probes()[0];
   return solid.field().Calc(p_O) < solid.field().max_error() &&
          solid.index().CalcSignedDistance(p_O) < 0.0;
 }
@@ -110,19 +109,40 @@ int FindCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
   return -1;
 }
 
+int EstimateCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
+                          const std::vector<RigidTransform>& X_HL,
+                          const Solid& solid) {
+  for (int i = 0; i < hand.model().num_links(); ++i) {
+    if (hand.link(i) &&
+        EstimateGap(*hand.link(i), X_OH * X_HL[i], solid, 0.0) < 0.0) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+double CalcLinkGapBound(const HandShape& hand, int link_A, int link_B,
+                        const std::vector<RigidTransform>& X_HL,
+                        double enough) {
+  return hand.link(link_A)->tree.CalcGapBound(
+      hand.link(link_B)->tree, X_HL[link_A].Inverse() * X_HL[link_B], enough);
+}
+
+bool LinksCollide(const HandShape& hand, int link_A, int link_B,
+                  const std::vector<RigidTransform>& X_HL) {
+  const LinkShape& A = *hand.link(link_A);
+  const LinkShape& B = *hand.link(link_B);
+  const RigidTransform X_AB = X_HL[link_A].Inverse() * X_HL[link_B];
+  const double reach = A.tree.radius() + B.tree.radius();
+  return (X_AB * B.tree.center() - A.tree.center()).squaredNorm() <=
+             reach * reach &&
+         A.shape.Intersects(B.shape, X_AB);
+}
+
 std::optional<std::pair<int, int>> FindSelfCollision(
     const HandShape& hand, const std::vector<RigidTransform>& X_HL) {
   for (const auto& [a, b] : hand.model().self_collision_pairs()) {
-    if (!hand.link(a) || !hand.link(b)) continue;
-    const SphereTree& tree_A = hand.link(a)->tree;
-    const SphereTree& tree_B = hand.link(b)->tree;
-    const RigidTransform X_AB = X_HL[a].Inverse() * X_HL[b];
-    const double reach = tree_A.radius() + tree_B.radius();
-    if ((X_AB * tree_B.center() - tree_A.center()).squaredNorm() >
-        reach * reach) {
-      continue;
-    }
-    if (hand.link(a)->shape.Intersects(hand.link(b)->shape, X_AB)) {
+    if (hand.link(a) && hand.link(b) && LinksCollide(hand, a, b, X_HL)) {
       return std::pair(a, b);
     }
   }

@@ -63,9 +63,24 @@ int FindCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
                       const std::vector<RigidTransform>& X_HL,
                       const Solid& solid);
 
+/** The same as the distance field alone tells it: links that overlap by a few
+ tenths of a millimetre may pass. */
+int EstimateCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
+                          const std::vector<RigidTransform>& X_HL,
+                          const Solid& solid);
+
 /** A pair of links that collide with each other, or nothing. */
 std::optional<std::pair<int, int>> FindSelfCollision(
     const HandShape& hand, const std::vector<RigidTransform>& X_HL);
+
+/** A proven lower bound, m, of the gap between two links of the hand. Once it
+ is known to be below `enough`, any value below that is returned. */
+double CalcLinkGapBound(const HandShape& hand, int link_A, int link_B,
+                        const std::vector<RigidTransform>& X_HL, double enough);
+
+/** True when two links of the hand penetrate each other. */
+bool LinksCollide(const HandShape& hand, int link_A, int link_B,
+                  const std::vector<RigidTransform>& X_HL);
 
 /** A proven lower bound, m, of the gap between a link and the solid. Once it is
  known to be below `enough`, any value below that is returned. */
@@ -73,9 +88,9 @@ double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
                     const Solid& solid, double enough);
 
 /** The gap, m, as the interpolated field tells it, to a few tenths of a
- millimetre near contact and to a quarter farther away. For choosing steps, not
- for deciding. */
+ millimetre near contact and to a half farther away; once it is known to be
+ below `enough`, any value below that. For choosing steps, not for deciding. */
 double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
-                   const Solid& solid);
+                   const Solid& solid, double enough = -1e300);
 
 }  // namespace graspdb

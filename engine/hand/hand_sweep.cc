@@ -9,9 +9,6 @@ namespace {
 
 // The contact is found to this motion, metres.
 constexpr double kContactMotion = 0.00002;
-// The hand, its links about 20 mm thick, is tested against itself this often,
-// metres of finger motion.
-constexpr double kSelfCollisionStep = 0.010;
 
 class Sweep {
  public:
@@ -30,10 +27,16 @@ class Sweep {
       for (int j = 0; j < hand.model().num_joints(); ++j) {
         finger += std::abs(to.q[j] - from.q[j]) * hand.motion_bound(i, j);
       }
-      finger_speed_ = std::max(finger_speed_, finger);
+      finger_speed_.push_back(finger);
       speed_.push_back(travel + turn * hand.reach(i) + finger);
     }
     max_speed_ = *std::max_element(speed_.begin(), speed_.end());
+    for (const auto& [a, b] : hand.model().self_collision_pairs()) {
+      const double speed = finger_speed_[a] + finger_speed_[b];
+      if (hand.link(a) && hand.link(b) && speed > 0.0) {
+        pairs_.push_back({a, b, speed, 0.0});
+      }
+    }
   }
 
   double Run() {
@@ -51,20 +54,37 @@ class Sweep {
   }
 
  private:
-  // The share of the way that no link can meet the solid in; or a fine step,
-  // not proven for the links in near_.
+  // Two links that move against each other.
+  struct LinkPair {
+    int a, b;
+    double speed;           // At most, metres over the whole way.
+    double certainly_free;  // The share of the way up to which they are.
+  };
+
+  // The share of the way that nothing can meet anything in; or a fine step, not
+  // proven for the links in near_ and the pairs in near_pairs_.
   double FindCertainStep(double t) {
     near_.clear();
     const HandConfiguration here = Interpolate(from_, to_, t);
     const auto X_HL = CalcLinkPoses(hand_.model(), here.q);
-    double step =
-        finger_speed_ > 0.0 ? kSelfCollisionStep / finger_speed_ : 1.0;
+    double step = 1.0;
     for (int i = 0; i < hand_.model().num_links(); ++i) {
       if (!hand_.link(i) || speed_[i] == 0.0) continue;
       const double gap =
           CalcGapBound(*hand_.link(i), here.X_OH * X_HL[i], solid_, fine_step_);
       if (gap < fine_step_) near_.push_back(i);
       step = std::min(step, std::max(gap, fine_step_) / speed_[i]);
+    }
+    near_pairs_.clear();
+    for (LinkPair& pair : pairs_) {
+      const double fine = fine_step_ / pair.speed;
+      if (pair.certainly_free < t + fine) {
+        const double gap =
+            CalcLinkGapBound(hand_, pair.a, pair.b, X_HL, fine_step_);
+        if (gap < fine_step_) near_pairs_.push_back(pair);
+        pair.certainly_free = t + std::max(gap / pair.speed, fine);
+      }
+      step = std::min(step, pair.certainly_free - t);
     }
     return step;
   }
@@ -79,10 +99,13 @@ class Sweep {
   }
 
   bool MeetsItself(double t) const {
-    return finger_speed_ > 0.0 &&
-           FindSelfCollision(hand_, CalcLinkPoses(hand_.model(),
-                                                  Interpolate(from_, to_, t).q))
-               .has_value();
+    if (near_pairs_.empty()) return false;
+    const auto X_HL =
+        CalcLinkPoses(hand_.model(), Interpolate(from_, to_, t).q);
+    return std::any_of(near_pairs_.begin(), near_pairs_.end(),
+                       [&](const LinkPair& pair) {
+                         return LinksCollide(hand_, pair.a, pair.b, X_HL);
+                       });
   }
 
   double Bisect(double low, double high) const {
@@ -100,8 +123,10 @@ class Sweep {
   const double fine_step_;
   std::vector<double> speed_;  // Per link, metres over the whole way.
   double max_speed_{0.0};
-  double finger_speed_{0.0};
-  std::vector<int> near_;  // Links whose gap is not proven.
+  std::vector<double> finger_speed_;  // The same, against the palm.
+  std::vector<LinkPair> pairs_;
+  std::vector<int> near_;             // Links whose gap is not proven …
+  std::vector<LinkPair> near_pairs_;  // … and pairs of them.
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ enum Stream : uint64_t {
 // A novel part with everything that its source grasps share.
 struct PartPair {
   const Part* part_E{nullptr};
-  std::unique_ptr<Solid> solid_E;
+  std::unique_ptr<SurfaceIndex> index_E;
   std::unique_ptr<Solid> solid_N;
   SurfaceAlignment alignment;
   std::unique_ptr<ContactMap> map;
@@ -111,8 +111,7 @@ class Transferrer {
         [&part_N](const Part& part) { return part.label == part_N.label; });
     if (found == request_.example_parts.end()) return;
     pair.part_E = &*found;
-    pair.solid_E =
-        std::make_unique<Solid>(found->solid_O, found->num_surface_faces);
+    pair.index_E = std::make_unique<SurfaceIndex>(found->solid_O);
     pair.solid_N =
         std::make_unique<Solid>(part_N.solid_O, part_N.num_surface_faces);
     const MappingParameters& mapping = parameters_.mapping;
@@ -130,10 +129,21 @@ class Transferrer {
     pair.alignment = RefineAlignment(samples_E, samples_N,
                                      CalcStart(*found, mapping.scale), options);
     pair.map = std::make_unique<ContactMap>(
-        samples_E, samples_N, pair.alignment, pair.solid_E->index(),
+        samples_E, samples_N,
+        CalcPointMap(*found, samples_E, samples_N, options), *pair.index_E,
         pair.solid_N->index(), mapping);
     alignment = {pair.alignment.X_NE, pair.alignment.scale,
                  pair.alignment.residual, pair.map->CalcMappedShare()};
+  }
+
+  // Where the example's points lie on the novel part.
+  AffineMap CalcPointMap(const Part& part_E, const SurfaceSamples& samples_E,
+                         const SurfaceSamples& samples_N,
+                         AlignmentOptions options) const {
+    options.scale = parameters_.mapping.affine;
+    return RefineAlignment(samples_E, samples_N,
+                           CalcStart(part_E, options.scale), options)
+        .map_NE;
   }
 
   // The whole objects' alignment, which a body's handle has turned right; a
@@ -178,9 +188,8 @@ class Transferrer {
     }
 
     // Sec. V-B: a stable grasp of the part …
-    ReplanResult on_part =
-        Replan(hand_, task, task.X_NH, *pair.solid_N, parameters_,
-               DeriveSeed(request_.seed, {kReplan, p, s}));
+    ReplanResult on_part = Replan(hand_, task, *pair.solid_N, parameters_,
+                                  DeriveSeed(request_.seed, {kReplan, p, s}));
     record.transfer = on_part.outcome;
     record.assembly = on_part.outcome;
     if (!on_part.grasp) return;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
-#include "engine/hand/finger_closing.h"
+#include "engine/geometry/surface_patch.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/quality/contact_extraction.h"
 #include "engine/quality/epsilon_quality.h"
@@ -23,7 +23,7 @@ constexpr double kPenetrationSpacing = 0.001;  // m
 // Visits patches of at most the spacing that may lie inside the solid.
 void VisitInside(const SurfacePatch& patch, const RigidTransform& X_OL,
                  const Solid& solid, double& deepest) {
-  const Eigen::Vector3d p_O = X_OL * patch.p_L;
+  const Eigen::Vector3d p_O = X_OL * patch.p;
   if (solid.field().Calc(p_O) - solid.field().max_error() > patch.radius) {
     return;
   }
@@ -47,7 +47,8 @@ double CalcEpsilon(const std::vector<Contact>& contacts,
 
 EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
                              const Eigen::VectorXd& q_pregrasp,
-                             const Solid& solid, const Parameters& parameters) {
+                             const Solid& solid, const Parameters& parameters,
+                             Precision precision) {
   EvaluatedGrasp result;
   Grasp& grasp = result.grasp;
   grasp.configuration = {X_OH, q_pregrasp};
@@ -57,7 +58,10 @@ EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
   grasp.quality.epsilon = -1.0;
 
   const auto X_HL_open = CalcLinkPoses(hand.model(), q_pregrasp);
-  const int colliding = FindCollidingLink(hand, X_OH, X_HL_open, solid);
+  const int colliding =
+      precision == Precision::kExact
+          ? FindCollidingLink(hand, X_OH, X_HL_open, solid)
+          : EstimateCollidingLink(hand, X_OH, X_HL_open, solid);
   if (colliding >= 0) {
     result.failure = colliding == 0 ? GraspFailure::kPalmCollision
                                     : GraspFailure::kFingerCollision;
@@ -67,7 +71,8 @@ EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
     result.failure = GraspFailure::kFingerCollision;
     return result;
   }
-  grasp.configuration.q = CloseFingers(hand, X_OH, q_pregrasp, solid);
+  grasp.configuration.q =
+      CloseFingers(hand, X_OH, q_pregrasp, solid, precision);
   grasp.contacts = ExtractContacts(
       hand, X_OH, CalcLinkPoses(hand.model(), grasp.configuration.q), solid,
       parameters.contact);
@@ -114,8 +119,9 @@ double CalcRobustness(const HandShape& hand, const Grasp& grasp,
     Parameters perturbed = parameters;
     perturbed.contact.friction *=
         1.0 + random.NextUniform(-kRobustFriction, kRobustFriction);
-    stable +=
-        CloseAndJudge(hand, X_OH, grasp.q_pregrasp, solid, perturbed).ok();
+    stable += CloseAndJudge(hand, X_OH, grasp.q_pregrasp, solid, perturbed,
+                            Precision::kEstimated)
+                  .ok();
   }
   return static_cast<double>(stable) / copies;
 }
@@ -128,8 +134,11 @@ double CalcPenetration(const HandShape& hand,
   for (int i = 0; i < hand.model().num_links(); ++i) {
     if (!hand.link(i)) continue;
     const RigidTransform X_OL = configuration.X_OH * X_HL[i];
-    for (const SurfacePatch& patch : hand.link(i)->tree.patches()) {
-      VisitInside(patch, X_OL, solid, deepest);
+    const TriangleMesh& mesh_L = hand.link(i)->mesh_L;
+    for (int f = 0; f < mesh_L.num_triangles(); ++f) {
+      VisitInside(MakeSurfacePatch({mesh_L.corner(f, 0), mesh_L.corner(f, 1),
+                                    mesh_L.corner(f, 2)}),
+                  X_OL, solid, deepest);
     }
     // The object's vertices within the link.
     const RigidTransform X_LO = X_OL.Inverse();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/geometry/solid.h"
+#include "engine/hand/finger_closing.h"
 #include "engine/hand/hand_shape.h"
 #include "engine/parameters.h"
 #include "engine/planning/grasp.h"
@@ -28,10 +29,12 @@ struct EvaluatedGrasp {
 
 /** Closes the hand at X_OH from q_pregrasp on the solid, finds the contacts and
  ε about the solid's mass centre. Approach and retreat are filled in, not
- checked; hybrid and volume are left at zero. */
+ checked; hybrid and volume are left at zero.
+ @param precision  A grasp that is kept must be exact. */
 EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
                              const Eigen::VectorXd& q_pregrasp,
-                             const Solid& solid, const Parameters& parameters);
+                             const Solid& solid, const Parameters& parameters,
+                             Precision precision = Precision::kExact);
 
 /** The wrench-space quality of contacts on an object with these mass
  properties; -1 for fewer than two contacts. */
@@ -52,7 +55,7 @@ inline constexpr int kRobustCopies = 32;
 
 /** The share of `copies` that stay stable, the hand moved uniformly within a
  3 mm ball and turned within 3 degrees, friction changed within ±20 %, fingers
- closed again from the pre-grasp. */
+ closed again, by estimate, from the pre-grasp. */
 double CalcRobustness(const HandShape& hand, const Grasp& grasp,
                       const Solid& solid, const Parameters& parameters,
                       uint64_t seed, int copies = kRobustCopies);

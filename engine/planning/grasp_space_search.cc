@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
@@ -214,21 +215,24 @@ class Swarm {
     const HandModel& hand = hand_.model();
     const Eigen::VectorXd q = hand.CalcCoupledJoints(particle.here.actuators);
     EvaluatedGrasp evaluated =
-        CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
+        CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_,
+                      Precision::kEstimated);
     if (evaluated.failure == GraspFailure::kPalmCollision ||
         evaluated.failure == GraspFailure::kFingerCollision) {
       return;
     }
-    Grasp& grasp = evaluated.grasp;
-    grasp.quality.hybrid = CalcHybrid(hand_, grasp, part_, parameters_);
-    if (grasp.quality.hybrid < particle.best_measure) {
-      particle.best_measure = grasp.quality.hybrid;
+    const double measure =
+        CalcHybrid(hand_, evaluated.grasp, part_, parameters_);
+    if (measure < particle.best_measure) {
+      particle.best_measure = measure;
       particle.best = particle.here;
       particle.stale = 0;
     }
-    if (evaluated.ok() && HoldsOnWhole(grasp) &&
-        IsReachable(hand_, grasp, obstacle_) && IsRobust(grasp, seed)) {
-      particle.found = grasp;
+    if (!evaluated.ok() || !IsRobust(evaluated.grasp, seed)) return;
+    evaluated = CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
+    if (evaluated.ok() && HoldsOnWhole(evaluated.grasp) &&
+        IsReachable(hand_, evaluated.grasp, obstacle_)) {
+      particle.found = std::move(evaluated.grasp);
     }
   }
 

@@ -8,10 +8,11 @@
 namespace graspdb {
 namespace {
 
-// Pieces of a link's surface that contacts are looked for from, metres.
-constexpr double kPieceRadius = 0.0008;
-// More than the distance field errs by next to a surface, metres.
-constexpr double kFieldSlack = 0.0005;
+// Between probes of the link, and where the distance field errs, the surfaces
+// may come closer than the field says at the probes, metres.
+constexpr double kSlack = 0.0007;
+// A patch is found to half a millimetre though probes are two apart, metres.
+constexpr double kOutwardSteps[] = {0.0015, 0.001, 0.0005};
 
 // Finds the contacts of one link.
 class LinkContacts {
@@ -26,34 +27,47 @@ class LinkContacts {
         solid_(solid),
         parameters_(parameters) {}
 
-  std::vector<Contact> Find() {
+  // Greedy patches: the smallest gap left leads, and takes all whose normals
+  // are within the angle of its own.
+  void AddTo(std::vector<Contact>& contacts) const {
+    std::vector<Contact> candidates = FindCandidates();
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+    const double min_cosine = std::cos(parameters_.patch_angle);
+    while (!candidates.empty()) {
+      const Eigen::Vector3d nhat = candidates.front().nhat_O;
+      const auto rest = std::stable_partition(
+          candidates.begin(), candidates.end(),
+          [&](const Contact& c) { return c.nhat_O.dot(nhat) >= min_cosine; });
+      AddExtremes({candidates.begin(), rest}, contacts);
+      candidates.erase(candidates.begin(), rest);
+    }
+  }
+
+ private:
+  std::vector<Contact> FindCandidates() const {
+    std::vector<Contact> candidates;
     link_.tree.VisitNear(
         [this](const Eigen::Vector3d& p_L) {
           return solid_.field().Calc(X_OL_ * p_L);
         },
-        parameters_.tolerance + kFieldSlack,
-        [this](const SurfacePatch& patch) { Visit(patch); });
-    return std::move(candidates_);
+        parameters_.tolerance + kSlack,
+        [&](const Eigen::Vector3d& p_L) {
+          if (const auto contact = FindContact(X_OL_ * p_L)) {
+            candidates.push_back(*contact);
+          }
+        });
+    return candidates;
   }
 
- private:
-  // Splits the patch, while it may touch, into pieces.
-  void Visit(const SurfacePatch& patch) {
-    const auto on_object = solid_.index().FindClosest(
-        X_OL_ * patch.p_L, parameters_.tolerance + patch.radius);
-    if (!on_object) return;
-    if (patch.radius > kPieceRadius) {
-      for (const SurfacePatch& half : SplitPatch(patch)) Visit(half);
-    } else if (const auto contact = FindContact(*on_object)) {
-      candidates_.push_back(*contact);
-    }
-  }
-
-  // Where link and object are closest around a point of the object: project
-  // it to the link, and to the object again.
-  std::optional<Contact> FindContact(const ClosestPoint& on_object) const {
-    const auto on_link = link_.index.FindClosest(
-        X_LO_ * on_object.p_M, parameters_.tolerance + kPieceRadius);
+  // Where link and object are closest around a point: project it to the object,
+  // that to the link, and to the object again.
+  std::optional<Contact> FindContact(const Eigen::Vector3d& p_O) const {
+    const double reach = parameters_.tolerance + 2.0 * kSlack;
+    const auto on_object = solid_.index().FindClosest(p_O, reach);
+    if (!on_object) return std::nullopt;
+    const auto on_link = link_.index.FindClosest(X_LO_ * on_object->p_M, reach);
     if (!on_link) return std::nullopt;
     const auto nearest =
         solid_.index().FindClosest(X_OL_ * on_link->p_M, parameters_.tolerance);
@@ -70,70 +84,59 @@ class LinkContacts {
     return Contact{link_index_, nearest->p_M, nhat_O, nearest->distance};
   }
 
+  // The ends of the patch and its widest points on both sides of their line.
+  void AddExtremes(const std::vector<Contact>& patch,
+                   std::vector<Contact>& contacts) const {
+    const auto farthest = [&patch](const auto& score) {
+      return *std::max_element(patch.begin(), patch.end(),
+                               [&score](const Contact& a, const Contact& b) {
+                                 return score(a) < score(b);
+                               });
+    };
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Contact& c : patch) middle += c.p_O / patch.size();
+    const Contact first = farthest(
+        [&](const Contact& c) { return (c.p_O - middle).squaredNorm(); });
+    const Contact second = farthest(
+        [&](const Contact& c) { return (c.p_O - first.p_O).squaredNorm(); });
+    const Eigen::Vector3d across =
+        first.nhat_O.cross(second.p_O - first.p_O).normalized();
+    const auto side = [&](const Contact& c) {
+      return across.dot(c.p_O - first.p_O);
+    };
+    const Contact left = farthest(side);
+    const Contact right = farthest([&](const Contact& c) { return -side(c); });
+
+    const auto mine = static_cast<std::ptrdiff_t>(contacts.size());
+    for (const Contact& found : {first, second, left, right}) {
+      const Contact next = PushOutwards(found, middle, patch.front());
+      const bool apart = std::all_of(
+          contacts.begin() + mine, contacts.end(), [&](const Contact& c) {
+            return (c.p_O - next.p_O).norm() >= parameters_.min_separation;
+          });
+      if (apart) contacts.push_back(next);
+    }
+  }
+
+  // The patch ends somewhere between this probe and the next one outwards.
+  Contact PushOutwards(const Contact& extreme, const Eigen::Vector3d& middle,
+                       const Contact& leader) const {
+    const Eigen::Vector3d out = (extreme.p_O - middle).normalized();
+    const double min_cosine = std::cos(parameters_.patch_angle);
+    for (const double step : kOutwardSteps) {
+      const auto next = FindContact(extreme.p_O + step * out);
+      if (next && next->nhat_O.dot(leader.nhat_O) >= min_cosine) return *next;
+    }
+    return extreme;
+  }
+
   const LinkShape& link_;
   const int link_index_;
   const RigidTransform X_OL_;
   const RigidTransform X_LO_;
   const Solid& solid_;
   const ContactParameters& parameters_;
-  std::vector<Contact> candidates_;
 };
-
-// The ends of the patch and its widest points on both sides of their line.
-std::vector<Contact> ChooseExtremes(const std::vector<Contact>& patch,
-                                    double min_separation) {
-  const auto farthest = [&patch](const auto& score) {
-    return *std::max_element(patch.begin(), patch.end(),
-                             [&score](const Contact& a, const Contact& b) {
-                               return score(a) < score(b);
-                             });
-  };
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Contact& c : patch) middle += c.p_O / patch.size();
-  const Contact first = farthest(
-      [&](const Contact& c) { return (c.p_O - middle).squaredNorm(); });
-  const Contact second = farthest(
-      [&](const Contact& c) { return (c.p_O - first.p_O).squaredNorm(); });
-  const Eigen::Vector3d across =
-      first.nhat_O.cross(second.p_O - first.p_O).normalized();
-  const auto side = [&](const Contact& c) {
-    return across.dot(c.p_O - first.p_O);
-  };
-  const Contact left = farthest(side);
-  const Contact right = farthest([&](const Contact& c) { return -side(c); });
-
-  std::vector<Contact> chosen{first};
-  for (const Contact& next : {second, left, right}) {
-    const bool apart =
-        std::all_of(chosen.begin(), chosen.end(), [&](const Contact& c) {
-          return (c.p_O - next.p_O).norm() >= min_separation;
-        });
-    if (apart) chosen.push_back(next);
-  }
-  return chosen;
-}
-
-// Greedy patches: the smallest gap left leads, and takes all whose normals are
-// within the angle of its own.
-void AddPatchContacts(std::vector<Contact> candidates,
-                      const ContactParameters& parameters,
-                      std::vector<Contact>& contacts) {
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
-  const double min_cosine = std::cos(parameters.patch_angle);
-  while (!candidates.empty()) {
-    const Eigen::Vector3d nhat = candidates.front().nhat_O;
-    const auto rest = std::stable_partition(
-        candidates.begin(), candidates.end(),
-        [&](const Contact& c) { return c.nhat_O.dot(nhat) >= min_cosine; });
-    const std::vector<Contact> patch(candidates.begin(), rest);
-    for (const Contact& c : ChooseExtremes(patch, parameters.min_separation)) {
-      contacts.push_back(c);
-    }
-    candidates.erase(candidates.begin(), rest);
-  }
-}
 
 }  // namespace
 
@@ -145,10 +148,8 @@ std::vector<Contact> ExtractContacts(const HandShape& hand,
   std::vector<Contact> contacts;
   for (int i = 0; i < hand.model().num_links(); ++i) {
     if (!hand.link(i)) continue;
-    AddPatchContacts(
-        LinkContacts(*hand.link(i), i, X_OH * X_HL[i], solid, parameters)
-            .Find(),
-        parameters, contacts);
+    LinkContacts(*hand.link(i), i, X_OH * X_HL[i], solid, parameters)
+        .AddTo(contacts);
   }
   return contacts;
 }

@@ -17,6 +17,9 @@ namespace {
 constexpr int kDim = 6;
 // Points this close to a facet's plane count as on it.
 constexpr double kPlaneTolerance = 1e-11;
+// More than the hull of a hundred wrenches has; a polytope that grows on is
+// broken by rounding.
+constexpr size_t kMaxFacets = 200000;
 // Spread of the wrenches below which they span no volume.
 constexpr double kFlatTolerance = 1e-8;
 
@@ -103,6 +106,7 @@ class ExpandingPolytope {
       if (nearest < 0) return std::nullopt;
       const int support = FindSupport(nearest);
       if (support < 0) return facets_[nearest].offset;
+      if (facets_.size() > kMaxFacets) return std::nullopt;
       if (!AddPoint(support, nearest)) return std::nullopt;
     }
   }
@@ -113,6 +117,7 @@ class ExpandingPolytope {
       while (facets_[f].alive) {
         const int support = FindSupport(static_cast<int>(f));
         if (support < 0) break;
+        if (facets_.size() > kMaxFacets) return std::nullopt;
         if (!AddPoint(support, static_cast<int>(f))) return std::nullopt;
       }
     }
@@ -265,7 +270,7 @@ double MeasureHull(const Wrenches& wrenches, double if_flat,
                    const Measure& measure) {
   Wrenches points = wrenches;
   Random random(1);
-  for (double shake = 1e-11; shake < 1e-6; shake *= 10.0) {
+  for (double shake = 1e-11; shake < 1e-6; shake *= 100.0) {
     ExpandingPolytope polytope(points);
     if (!polytope.Start()) return if_flat;
     if (const std::optional<double> value = measure(polytope)) return *value;

@@ -13,7 +13,7 @@ namespace graspdb {
 double CalcEpsilonQuality(const Wrenches& wrenches);
 
 /** The volume of the convex hull of the wrenches; 0 when they do not span six
- dimensions. */
+ dimensions or rounding defeats it. */
 double CalcWrenchVolume(const Wrenches& wrenches);
 
 }  // namespace graspdb

@@ -51,12 +51,11 @@ std::optional<Eigen::Vector3d> CalcMeanImage(
 }  // namespace
 
 ContactMap::ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
-                       const SurfaceAlignment& alignment,
-                       const SurfaceIndex& index_E, const SurfaceIndex& index_N,
+                       const AffineMap& map_NE, const SurfaceIndex& index_E,
+                       const SurfaceIndex& index_N,
                        const MappingParameters& parameters)
     : samples_E_(std::move(samples_E)),
       samples_N_(std::move(samples_N)),
-      alignment_(alignment),
       index_E_(&index_E),
       index_N_(&index_N),
       parameters_(parameters),
@@ -64,12 +63,12 @@ ContactMap::ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
       tree_N_(samples_N_.points) {
   GRASPDB_EXPECTS(samples_E_.size() > 0 && samples_N_.size() > 0);
   Eigen::Vector3d low = samples_E_.points[0], high = samples_E_.points[0];
-  SurfaceSamples moved_E = samples_E_;  // A under (R*, T*), in frame N.
+  SurfaceSamples moved_E = samples_E_;  // A under map_NE, in frame N.
   for (int i = 0; i < samples_E_.size(); ++i) {
     low = low.cwiseMin(samples_E_.points[i]);
     high = high.cwiseMax(samples_E_.points[i]);
-    moved_E.points[i] = alignment * samples_E_.points[i];
-    moved_E.normals[i] = alignment.X_NE.rotation * samples_E_.normals[i];
+    moved_E.points[i] = map_NE * samples_E_.points[i];
+    moved_E.normals[i] = map_NE.MapNormal(samples_E_.normals[i]);
   }
   max_error_ = parameters.consistency * (high - low).norm();
   const KdTree tree_moved_E(moved_E.points);

@@ -9,7 +9,7 @@
 #include "engine/geometry/surface_samples.h"
 #include "engine/math/kd_tree.h"
 #include "engine/parameters.h"
-#include "engine/registration/surface_alignment.h"
+#include "engine/registration/sample_matching.h"
 
 namespace graspdb {
 
@@ -21,13 +21,14 @@ class ContactMap {
  public:
   /** @param samples_E  The paper's A: points and normals expressed in frame E.
    @param samples_N  The paper's B: points and normals expressed in frame N.
-   @param alignment  The paper's (R*, T*), with its scale.
+   @param map_NE  Where the points of E lie on N: the paper's (R*, T*), or an
+     affine refinement of it.
    @param index_N  The novel part's surface, to which images are projected;
      outlives the map.
    @param index_E  The example part's surface; outlives the map.
    @pre Neither sample set is empty. */
   ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
-             const SurfaceAlignment& alignment, const SurfaceIndex& index_E,
+             const AffineMap& map_NE, const SurfaceIndex& index_E,
              const SurfaceIndex& index_N, const MappingParameters& parameters);
 
   /** F(a) for each a of A: the nearest b whose normal is within δ of R* n_a;
@@ -65,7 +66,6 @@ class ContactMap {
  private:
   SurfaceSamples samples_E_;
   SurfaceSamples samples_N_;
-  SurfaceAlignment alignment_;
   const SurfaceIndex* index_E_;
   const SurfaceIndex* index_N_;
   MappingParameters parameters_;

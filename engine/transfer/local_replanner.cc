@@ -15,6 +15,10 @@ namespace {
 // Assembly tries to draw the palm back this far, in these steps, metres.
 constexpr double kMaxRetreat = 0.010;
 constexpr double kRetreatStep = 0.0025;
+// Of the transfer's limits, so that rounding does not lead beyond them.
+constexpr double kWithinLimits = 0.98;
+// How far the hand's frame reaches when the wrist is fitted, metres.
+constexpr double kFrameLength = 0.05;
 
 TransferOutcome ToOutcome(GraspFailure failure) {
   switch (failure) {
@@ -34,6 +38,26 @@ TransferOutcome ToOutcome(GraspFailure failure) {
   return TransferOutcome::kUnstable;
 }
 
+// Back to what may be called a transfer of the source grasp.
+RigidTransform Confine(const RigidTransform& X_NH, const RigidTransform& around,
+                       const TransferLimits& limits) {
+  RigidTransform confined = X_NH;
+  const Eigen::Vector3d shift = X_NH.translation - around.translation;
+  const double max_shift = kWithinLimits * limits.max_translation;
+  if (shift.norm() > max_shift) {
+    confined.translation =
+        around.translation + shift * (max_shift / shift.norm());
+  }
+  const Eigen::AngleAxisd turn(around.rotation.transpose() * X_NH.rotation);
+  const double max_turn = kWithinLimits * limits.max_rotation;
+  if (turn.angle() > max_turn) {
+    confined.rotation =
+        around.rotation *
+        Eigen::AngleAxisd(max_turn, turn.axis()).toRotationMatrix();
+  }
+  return confined;
+}
+
 // Annealing of one grasp on one solid.
 class Replanner {
  public:
@@ -46,9 +70,67 @@ class Replanner {
         replan_(parameters.replan),
         random_(seed) {}
 
-  ReplanResult Run(const RigidTransform& start_X_NH) {
-    Sample here{start_X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
-    double here_value = Evaluate(here);
+  ReplanResult Run(const std::vector<RigidTransform>& starts) {
+    std::vector<Rated> ranked = RankStarts(starts);
+    int cycle = 0;
+    do {
+      Anneal(ranked[cycle % ranked.size()]);
+    } while (!best_ && ++cycle < replan_.cycles);
+    if (!best_) return {furthest_, std::nullopt};
+    return {TransferOutcome::kSucceeded, std::move(best_)};
+  }
+
+ private:
+  struct Sample {
+    RigidTransform X_NH;
+    Eigen::VectorXd motors;  // Before closing.
+  };
+
+  struct Rated {
+    Sample sample;
+    double value;  // Of Eq. (6).
+  };
+
+  // The best one first. Where the open hand collides, it first draws back.
+  std::vector<Rated> RankStarts(const std::vector<RigidTransform>& starts) {
+    std::vector<Rated> ranked;
+    for (const RigidTransform& X_NH : starts) {
+      Sample sample{X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
+      DrawBack(sample);
+      ranked.push_back({sample, Evaluate(sample)});
+    }
+    std::stable_sort(
+        ranked.begin(), ranked.end(),
+        [](const Rated& a, const Rated& b) { return a.value < b.value; });
+    return ranked;
+  }
+
+  // Against the approach, as far as the transfer's limits allow.
+  void DrawBack(Sample& sample) const {
+    const Eigen::Vector3d approach =
+        sample.X_NH.rotation * hand_.model().approach_H();
+    Sample drawn = sample;
+    for (double retreat = 0.0; retreat <= parameters_.transfer.max_translation;
+         retreat += kRetreatStep) {
+      drawn.X_NH.translation = sample.X_NH.translation - retreat * approach;
+      drawn.X_NH = Confine(drawn.X_NH, task_.X_NH, parameters_.transfer);
+      if (IsFree(drawn)) {
+        sample = drawn;
+        return;
+      }
+    }
+  }
+
+  bool IsFree(const Sample& sample) const {
+    const auto X_HL = CalcLinkPoses(
+        hand_.model(), hand_.model().CalcCoupledJoints(sample.motors));
+    return EstimateCollidingLink(hand_, sample.X_NH, X_HL, solid_) < 0;
+  }
+
+  // Simulated annealing, as printed.
+  void Anneal(const Rated& start) {
+    Sample here = start.sample;
+    double here_value = start.value;
     int since_gain = 0;
     for (int i = 0; i < replan_.iterations && since_gain < replan_.patience;
          ++i) {
@@ -72,42 +154,48 @@ class Replanner {
       since_gain =
           best_ && BestEpsilon() == epsilon_before ? since_gain + 1 : 0;
     }
-    if (!best_) return {furthest_, std::nullopt};
-    return {TransferOutcome::kSucceeded, std::move(best_)};
   }
-
- private:
-  struct Sample {
-    RigidTransform X_NH;
-    Eigen::VectorXd motors;  // Before closing.
-  };
 
   double BestEpsilon() const { return best_ ? best_->quality.epsilon : 0.0; }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
   // value of Eq. (6), or infinity in collision.
   double Evaluate(const Sample& sample) {
+    const Eigen::VectorXd q = hand_.model().CalcCoupledJoints(sample.motors);
     const EvaluatedGrasp evaluated = CloseAndJudge(
-        hand_, sample.X_NH, hand_.model().CalcCoupledJoints(sample.motors),
-        solid_, parameters_);
+        hand_, sample.X_NH, q, solid_, parameters_, Precision::kEstimated);
     Note(ToOutcome(evaluated.failure));
     if (evaluated.failure == GraspFailure::kPalmCollision ||
         evaluated.failure == GraspFailure::kFingerCollision) {
       return std::numeric_limits<double>::infinity();
     }
     const Grasp& grasp = evaluated.grasp;
-    if (evaluated.ok() && grasp.quality.epsilon > BestEpsilon()) {
-      if (!IsTransferOf(task_, grasp, parameters_.transfer)) {
-        Note(TransferOutcome::kTooFar);
-      } else if (!IsReachable(hand_, grasp, solid_)) {
-        Note(TransferOutcome::kUnreachable);
-      } else {
-        best_ = grasp;
+    if (evaluated.ok() && grasp.quality.epsilon > BestEpsilon() &&
+        Counts(grasp)) {
+      // What is kept is exact.
+      const EvaluatedGrasp exact =
+          CloseAndJudge(hand_, sample.X_NH, q, solid_, parameters_);
+      Note(ToOutcome(exact.failure));
+      if (exact.ok() && exact.grasp.quality.epsilon > BestEpsilon() &&
+          Counts(exact.grasp) && CanBeReached(exact.grasp)) {
+        best_ = exact.grasp;
       }
     }
     return CalcReplanObjective(CalcGoals(grasp), grasp.configuration.q, task_.q,
                                grasp.quality.epsilon,
                                parameters_.hybrid.epsilon_floor, replan_);
+  }
+
+  bool Counts(const Grasp& grasp) {
+    if (IsTransferOf(task_, grasp, parameters_.transfer)) return true;
+    Note(TransferOutcome::kTooFar);
+    return false;
+  }
+
+  bool CanBeReached(const Grasp& grasp) {
+    if (IsReachable(hand_, grasp, solid_)) return true;
+    Note(TransferOutcome::kUnreachable);
+    return false;
   }
 
   // Where the source's contact points on the fingers are now.
@@ -125,12 +213,8 @@ class Replanner {
   // A free sample near `around`; when the first collides, the paper adds more.
   std::optional<Sample> DrawFree(const Sample& around, double share) {
     for (int i = 0; i <= replan_.extra_samples; ++i) {
-      Sample sample = Draw(around, share);
-      const auto X_HL = CalcLinkPoses(
-          hand_.model(), hand_.model().CalcCoupledJoints(sample.motors));
-      if (FindCollidingLink(hand_, sample.X_NH, X_HL, solid_) < 0) {
-        return sample;
-      }
+      const Sample sample = Draw(around, share);
+      if (IsFree(sample)) return sample;
     }
     return std::nullopt;
   }
@@ -156,27 +240,9 @@ class Replanner {
       sample.X_NH.rotation =
           around.X_NH.rotation *
           random_.NextRotationWithin(share * replan_.trust_rotation);
-      Confine(sample.X_NH);
+      sample.X_NH = Confine(sample.X_NH, task_.X_NH, parameters_.transfer);
     }
     return sample;
-  }
-
-  // Back to what may be called a transfer of the source grasp.
-  void Confine(RigidTransform& X_NH) const {
-    const Eigen::Vector3d shift = X_NH.translation - task_.X_NH.translation;
-    const double max_shift = 0.98 * parameters_.transfer.max_translation;
-    if (shift.norm() > max_shift) {
-      X_NH.translation =
-          task_.X_NH.translation + shift * (max_shift / shift.norm());
-    }
-    const Eigen::AngleAxisd turn(task_.X_NH.rotation.transpose() *
-                                 X_NH.rotation);
-    const double max_turn = 0.98 * parameters_.transfer.max_rotation;
-    if (turn.angle() > max_turn) {
-      X_NH.rotation =
-          task_.X_NH.rotation *
-          Eigen::AngleAxisd(max_turn, turn.axis()).toRotationMatrix();
-    }
   }
 
   // Of all that went wrong, what came nearest to success is the reason given.
@@ -252,10 +318,34 @@ bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
   return HasOpposedPair(reached, limits.min_opposed_contacts);
 }
 
+RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
+  const auto X_HL = CalcLinkPoses(hand, task.q);
+  // The hand's own frame, where T* puts it, holds what targets leave free.
+  const auto n = static_cast<int>(task.targets.size());
+  Eigen::Matrix3Xd p_H(3, n + 4), p_N(3, n + 4);
+  for (int i = 0; i < n; ++i) {
+    const ContactTarget& target = task.targets[i];
+    p_H.col(i) = X_HL[target.link] * target.p_L;
+    p_N.col(i) = target.p_N;
+  }
+  p_H.rightCols<4>() << Eigen::Vector3d::Zero(),
+      kFrameLength * Eigen::Matrix3d::Identity();
+  for (int i = n; i < n + 4; ++i) {
+    p_N.col(i) = task.X_NH * Eigen::Vector3d(p_H.col(i));
+  }
+  const Eigen::Matrix4d fit = Eigen::umeyama(p_H, p_N, false);
+  return {fit.topLeftCorner<3, 3>(), fit.topRightCorner<3, 1>()};
+}
+
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
-                    const RigidTransform& start_X_NH, const Solid& solid,
-                    const Parameters& parameters, uint64_t seed) {
-  return Replanner(hand, task, solid, parameters, seed).Run(start_X_NH);
+                    const Solid& solid, const Parameters& parameters,
+                    uint64_t seed) {
+  std::vector<RigidTransform> starts{task.X_NH};
+  if (parameters.replan.fit_start) {
+    starts.push_back(
+        Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
+  }
+  return Replanner(hand, task, solid, parameters, seed).Run(starts);
 }
 
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
@@ -277,7 +367,13 @@ ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
   }
   TransferTask on_whole = task;
   on_whole.q_pregrasp = transferred.q_pregrasp;
-  return Replan(hand, on_whole, start, whole, parameters, seed);
+  std::vector<RigidTransform> starts{start};
+  if (parameters.replan.fit_start) {
+    starts.push_back(task.X_NH);
+    starts.push_back(
+        Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
+  }
+  return Replanner(hand, on_whole, whole, parameters, seed).Run(starts);
 }
 
 double CalcOpenCloseEpsilon(const HandShape& hand, const TransferTask& task,

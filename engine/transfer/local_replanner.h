@@ -43,14 +43,19 @@ bool HasOpposedPair(const std::vector<Eigen::Vector3d>& normals, int least);
 bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
                   const TransferLimits& limits);
 
-/** Local replanning: simulated annealing on Eq. (6) around `start_X_NH`. Each
- sample that collides is replaced by up to extra_samples others; each free one
- closes its fingers, and the stable, reachable, near-enough grasp with the
- largest ε is the answer. Deterministic for a seed. @paper{Sec. V-B}
- @param start_X_NH  Where to start; may differ from task.X_NH. */
+/** Where the hand with the source grasp's closed joints brings its contacts
+ nearest to their targets, in the least-squares sense, while its frame stays
+ near T* X_EH. */
+RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
+
+/** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
+ fit_start, from FitWrist(). Each sample that collides is replaced by up to
+ extra_samples others; each free one closes its fingers, and the stable,
+ reachable, near-enough grasp with the largest ε is the answer. Deterministic
+ for a seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
-                    const RigidTransform& start_X_NH, const Solid& solid,
-                    const Parameters& parameters, uint64_t seed);
+                    const Solid& solid, const Parameters& parameters,
+                    uint64_t seed);
 
 /** Assembly: the grasp of the part on the whole object. When the palm collides,
  small retreats are tried; the annealing then works on the whole object.

@@ -33,7 +33,7 @@ class GripperPipeline : public ::testing::Test {
     p.active_learning.queries_per_round = 100;
     p.active_learning.test_samples = 50;
     p.swarm.particles = 40;
-    p.swarm.iterations = 16;
+    p.swarm.iterations = 40;
     p.mapping.samples = 400;
     p.replan.iterations = 30;
     return p;

@@ -22,7 +22,7 @@ class GripperSwarm : public ::testing::Test {
  protected:
   GripperSwarm() {
     parameters_.swarm.particles = 30;
-    parameters_.swarm.iterations = 16;
+    parameters_.swarm.iterations = 40;
     parameters_.active_learning.seed_samples = 300;
     parameters_.active_learning.rounds = 1;
     parameters_.active_learning.queries_per_round = 100;

@@ -94,6 +94,25 @@ TEST(WrenchVolume, AgreesWithQhull) {
   }
 }
 
+// Eight contacts at the corners of two flat patches: many coplanar wrenches,
+// on which the polytope once grew until memory ran out.
+TEST(WrenchVolume, OfTwoFlatPatchesIsFoundOrGivenUp) {
+  std::vector<Contact> contacts;
+  for (const double x : {-0.02, 0.02}) {
+    for (const double y : {-0.00999, 0.00998}) {
+      for (const double z : {-0.0098, 0.0188}) {
+        contacts.push_back(
+            {1, {x, y, z}, {x > 0 ? 1.0 : -1.0, 0.0, 0.0}, 0.0001});
+      }
+    }
+  }
+  MassProperties mass;
+  mass.max_radius = 0.035;
+  const Wrenches wrenches = CalcContactWrenches(contacts, mass, {});
+  EXPECT_GE(CalcWrenchVolume(wrenches), 0.0);
+  EXPECT_GT(CalcEpsilonQuality(wrenches), 0.0);
+}
+
 TEST(EpsilonQuality, GrowsWithFrictionAndWithMoreContacts) {
   Random random(13);
   for (int i = 0; i < 200; ++i) {

@@ -13,8 +13,6 @@ namespace {
 // The same box twice, the second one turned and moved.
 class BoxOntoItself : public ::testing::Test {
  protected:
-  BoxOntoItself() { alignment_.X_NE = X_NE_; }
-
   const TriangleMesh box_E_ = workshop::MakeBox({0.04, 0.06, 0.1}, 8);
   const RigidTransform X_NE_{
       Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, 3).normalized())
@@ -23,7 +21,7 @@ class BoxOntoItself : public ::testing::Test {
   const TriangleMesh box_N_ = CalcTransformed(box_E_, X_NE_);
   const SurfaceIndex index_E_{box_E_};
   const SurfaceIndex index_N_{box_N_};
-  SurfaceAlignment alignment_;
+  const AffineMap map_NE_{X_NE_.rotation, X_NE_.translation};
 };
 
 TEST_F(BoxOntoItself, MapIsTheIdentityWhenSamplesCoincide) {
@@ -33,8 +31,7 @@ TEST_F(BoxOntoItself, MapIsTheIdentityWhenSamplesCoincide) {
     samples_N.points[i] = X_NE_ * samples_E.points[i];
     samples_N.normals[i] = X_NE_.rotation * samples_E.normals[i];
   }
-  const ContactMap map(samples_E, samples_N, alignment_, index_E_, index_N_,
-                       {});
+  const ContactMap map(samples_E, samples_N, map_NE_, index_E_, index_N_, {});
   for (int i = 0; i < samples_E.size(); ++i) {
     EXPECT_EQ(map.forward()[i], i);
     EXPECT_EQ(map.backward()[i], i);
@@ -45,7 +42,7 @@ TEST_F(BoxOntoItself, MapIsTheIdentityWhenSamplesCoincide) {
 
 TEST_F(BoxOntoItself, ThereAndBackAgainIsNear) {
   const ContactMap map(SamplePoissonDisk(box_E_, 1000, 1),
-                       SamplePoissonDisk(box_N_, 1000, 2), alignment_, index_E_,
+                       SamplePoissonDisk(box_N_, 1000, 2), map_NE_, index_E_,
                        index_N_, {});
   const Eigen::Vector3d p_E(0.02, 0.01, 0.02), nhat_E(1, 0, 0);
   const auto p_N = map.MapForward(p_E, nhat_E);
@@ -59,7 +56,7 @@ TEST_F(BoxOntoItself, ThereAndBackAgainIsNear) {
 
 TEST_F(BoxOntoItself, ImagesLieOnTheSurfaceNearTheTruth) {
   const ContactMap map(SamplePoissonDisk(box_E_, 1000, 1),
-                       SamplePoissonDisk(box_N_, 1000, 2), alignment_, index_E_,
+                       SamplePoissonDisk(box_N_, 1000, 2), map_NE_, index_E_,
                        index_N_, {});
   const Eigen::Vector3d p_E(0.02, 0.01, 0.02), nhat_E(1, 0, 0);
   const auto p_N = map.MapConsistently(p_E, nhat_E);
@@ -71,8 +68,8 @@ TEST_F(BoxOntoItself, ImagesLieOnTheSurfaceNearTheTruth) {
 TEST_F(BoxOntoItself, NoNormalWithinTheGateMeansNoImage) {
   // Turned by 45 degrees about z, side normals are 45 degrees apart from any
   // novel one: more than δ = 30 degrees.
-  SurfaceAlignment turned;
-  turned.X_NE.rotation =
+  AffineMap turned;
+  turned.linear =
       Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const ContactMap map(SamplePoissonDisk(box_E_, 600, 1),
                        SamplePoissonDisk(box_E_, 600, 2), turned, index_E_,

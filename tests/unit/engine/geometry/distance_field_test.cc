@@ -1,0 +1,49 @@
+#include "engine/geometry/distance_field.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+class FieldOfABox : public ::testing::Test {
+ protected:
+  const TriangleMesh box_ = workshop::MakeBox({0.06, 0.04, 0.09}, 3);
+  const SurfaceIndex index_{box_};
+  const DistanceField field_{box_, index_, 64, 0.01};
+};
+
+TEST_F(FieldOfABox, NeverPromisesMoreThanTheTrueDistance) {
+  Random random(51);
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector3d p = 0.12 * random.NextInUnitBall();
+    EXPECT_LE(field_.Calc(p) - field_.max_error(),
+              index_.CalcSignedDistance(p) + 1e-6);
+  }
+}
+
+TEST_F(FieldOfABox, IsAccurateNextToTheSurface) {
+  Random random(52);
+  int near = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d p = 0.06 * random.NextInUnitBall();
+    const double truth = index_.CalcSignedDistance(p);
+    if (std::abs(truth) > field_.cell_size()) continue;
+    EXPECT_NEAR(field_.Calc(p), truth, field_.max_error());
+    ++near;
+  }
+  EXPECT_GT(near, 500);
+}
+
+TEST_F(FieldOfABox, FarAwayItIsTheDistanceToTheGrid) {
+  const double far = field_.Calc({1.0, 0, 0});
+  EXPECT_LE(far, 0.97 + 1e-9);
+  EXPECT_GT(far, 0.95);
+}
+
+}  // namespace
+}  // namespace graspdb

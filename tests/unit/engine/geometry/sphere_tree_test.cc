@@ -1,0 +1,86 @@
+#include "engine/geometry/sphere_tree.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+#include "engine/geometry/surface_index.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+class TreeOfABox : public ::testing::Test {
+ protected:
+  // The distance to a point: Lipschitz with constant one.
+  static auto DistanceTo(const Eigen::Vector3d& q) {
+    return [q](const Eigen::Vector3d& p) { return (p - q).norm(); };
+  }
+
+  const TriangleMesh box_ = workshop::MakeBox({0.02, 0.03, 0.05}, 2);
+  const SphereTree tree_{box_, 0.002};
+};
+
+TEST_F(TreeOfABox, ProbesLieOnTheSurfaceAndCoverIt) {
+  const SurfaceIndex index(box_);
+  for (const Eigen::Vector3d& p : tree_.probes()) {
+    EXPECT_LT(index.FindClosest(p)->distance, 1e-9);
+  }
+  for (const Eigen::Vector3d& corner : box_.vertices()) {
+    double nearest = 1.0;
+    for (const Eigen::Vector3d& p : tree_.probes()) {
+      nearest = std::min(nearest, (p - corner).norm());
+    }
+    EXPECT_LT(nearest, 0.002 * 1.8);
+  }
+}
+
+TEST_F(TreeOfABox, TheBoundIsBelowAndTheEstimateNearTheTruth) {
+  const SurfaceIndex index(box_);
+  Random random(61);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d q = 0.1 * random.NextInUnitBall();
+    const double truth = index.FindClosest(q)->distance;
+    EXPECT_LE(tree_.CalcLowerBound(DistanceTo(q), -1.0), truth + 1e-12);
+    const double estimate = tree_.EstimateMinimum(DistanceTo(q), -1.0);
+    EXPECT_LE(estimate, truth + 0.003);
+    EXPECT_GE(estimate, 0.5 * truth - 1e-12);
+  }
+}
+
+TEST_F(TreeOfABox, GapBoundOfTwoNeverExceedsTheTruth) {
+  Random random(62);
+  for (int i = 0; i < 300; ++i) {
+    const RigidTransform X_AB{random.NextRotation(),
+                              0.12 * random.NextInUnitBall()};
+    double truth = 1.0;
+    for (const Eigen::Vector3d& p : tree_.probes()) {
+      for (const Eigen::Vector3d& q : tree_.probes()) {
+        truth = std::min(truth, (p - X_AB * q).squaredNorm());
+      }
+    }
+    truth = std::sqrt(truth);
+    const double bound = tree_.CalcGapBound(tree_, X_AB, -1.0);
+    EXPECT_LE(bound, truth);
+    EXPECT_GE(bound, 0.5 * truth - 0.02);
+  }
+}
+
+TEST_F(TreeOfABox, VisitsExactlyTheProbesWithinTheLimit) {
+  const Eigen::Vector3d q(0.015, 0.0, 0.01);
+  const auto distance = DistanceTo(q);
+  int visited = 0;
+  tree_.VisitNear(distance, 0.012, [&](const Eigen::Vector3d& p) {
+    EXPECT_LE(distance(p), 0.012);
+    ++visited;
+  });
+  const auto expected =
+      std::count_if(tree_.probes().begin(), tree_.probes().end(),
+                    [&](const auto& p) { return distance(p) <= 0.012; });
+  EXPECT_EQ(visited, expected);
+  EXPECT_GT(visited, 5);
+}
+
+}  // namespace
+}  // namespace graspdb
