@@ -54,7 +54,7 @@ Parameters MakePaperParameters() {
   p.swarm.patience = p.swarm.iterations;
   p.mapping.affine = false;
   p.replan.cycles = 1;
-  p.replan.fit_start = false;
+  p.replan.aimed_starts = false;
   p.replan.iterations = 300;
   p.replan.patience = 300;
   p.replan.move_wrist = false;

@@ -107,7 +107,7 @@ struct ActiveLearningParameters {
 /** Sec. IV, grasp space by particle swarm optimisation. */
 struct SwarmParameters {
   int particles{200};
-  int iterations{60};
+  int iterations{120};
   double acceleration{2.05};
   double max_step{0.02};
   double max_turn{0.35};
@@ -228,7 +228,7 @@ struct ReplanParameters {
   int iterations{60};
   int patience{15};
   int cycles{4};
-  bool fit_start{true};
+  bool aimed_starts{true};
   int extra_samples{20};
   double initial_temperature{10.0};
   double final_temperature{0.1};
@@ -256,9 +256,9 @@ struct ReplanParameters {
       ParameterInfo{"1", 1, 1e6, "ours: stop after so many without gain"});
     f("cycles", self.cycles,
       ParameterInfo{"1", 1, 1000, "ours: annealings at most, until one finds"});
-    f("fit_start", self.fit_start,
+    f("aimed_starts", self.aimed_starts,
       ParameterInfo{"1", 0, 1,
-                    "ours: starts from a least-squares fit, too; paper: T*"});
+                    "ours: also from a fitted wrist, drawn back if need be"});
     f("extra_samples", self.extra_samples,
       ParameterInfo{"1", 0, 1000, "paper Sec. V-B: 20 more when in collision"});
     f("initial_temperature", self.initial_temperature,

@@ -13,6 +13,7 @@
 #include "engine/pipeline/thread_arena.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/quality/epsilon_quality.h"
+#include "engine/quality/opposed_contacts.h"
 #include "engine/quality/wrench_space.h"
 #include "engine/registration/surface_alignment.h"
 #include "engine/transfer/contact_map.h"

@@ -14,6 +14,7 @@
 #include "engine/hand/hand_sweep.h"
 #include "engine/planning/grasp_archive.h"
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/quality/opposed_contacts.h"
 
 namespace graspdb {
 namespace {
@@ -236,11 +237,16 @@ class Swarm {
     }
   }
 
+  // On the whole object the same contacts must hold, not others that happen to.
   bool HoldsOnWhole(const Grasp& grasp) const {
-    return whole_ == nullptr ||
-           CloseAndJudge(hand_, grasp.configuration.X_OH, grasp.q_pregrasp,
-                         *whole_, parameters_)
-               .ok();
+    if (whole_ == nullptr) return true;
+    const EvaluatedGrasp on_whole =
+        CloseAndJudge(hand_, grasp.configuration.X_OH, grasp.q_pregrasp,
+                      *whole_, parameters_);
+    return on_whole.ok() &&
+           ReachesOpposedTargets(on_whole.grasp.contacts, grasp.contacts,
+                                 parameters_.transfer.max_target_distance,
+                                 parameters_.transfer.min_opposed_contacts);
   }
 
   bool IsRobust(const Grasp& grasp, uint64_t seed) const {

@@ -7,13 +7,13 @@
 
 #include "engine/base/random.h"
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/quality/opposed_contacts.h"
 #include "engine/transfer/replan_objective.h"
 
 namespace graspdb {
 namespace {
 
-// Assembly tries to draw the palm back this far, in these steps, metres.
-constexpr double kMaxRetreat = 0.010;
+// A start whose open hand collides draws back in these steps, metres.
 constexpr double kRetreatStep = 0.0025;
 // Of the transfer's limits, so that rounding does not lead beyond them.
 constexpr double kWithinLimits = 0.98;
@@ -58,6 +58,13 @@ RigidTransform Confine(const RigidTransform& X_NH, const RigidTransform& around,
   return confined;
 }
 
+bool PalmCollides(const HandShape& hand, const RigidTransform& X_NH,
+                  const Eigen::VectorXd& q, const Solid& solid) {
+  return hand.link(0) &&
+         LinkCollides(*hand.link(0), X_NH * CalcLinkPose(hand.model(), q, 0),
+                      solid);
+}
+
 // Annealing of one grasp on one solid.
 class Replanner {
  public:
@@ -91,12 +98,12 @@ class Replanner {
     double value;  // Of Eq. (6).
   };
 
-  // The best one first. Where the open hand collides, it first draws back.
+  // The best one first; an aimed one draws back where the open hand collides.
   std::vector<Rated> RankStarts(const std::vector<RigidTransform>& starts) {
     std::vector<Rated> ranked;
     for (const RigidTransform& X_NH : starts) {
       Sample sample{X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
-      DrawBack(sample);
+      if (replan_.aimed_starts) DrawBack(sample);
       ranked.push_back({sample, Evaluate(sample)});
     }
     std::stable_sort(
@@ -286,17 +293,6 @@ const char* ToString(TransferOutcome outcome) {
   return "unknown";
 }
 
-bool HasOpposedPair(const std::vector<Eigen::Vector3d>& normals, int least) {
-  // Each that opposes another one counts.
-  int opposed = 0;
-  for (const Eigen::Vector3d& a : normals) {
-    opposed +=
-        std::any_of(normals.begin(), normals.end(),
-                    [&a](const Eigen::Vector3d& b) { return a.dot(b) < 0.0; });
-  }
-  return opposed >= least;
-}
-
 bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
                   const TransferLimits& limits) {
   const RigidTransform& X_NH = grasp.configuration.X_OH;
@@ -306,16 +302,13 @@ bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
           limits.max_rotation) {
     return false;
   }
-  std::vector<Eigen::Vector3d> reached;
+  std::vector<Contact> targets;
   for (const ContactTarget& target : task.targets) {
-    const bool near = std::any_of(
-        grasp.contacts.begin(), grasp.contacts.end(), [&](const Contact& c) {
-          return c.link == target.link &&
-                 (c.p_O - target.p_N).norm() <= limits.max_target_distance;
-        });
-    if (near) reached.push_back(target.nhat_N);
+    targets.push_back({target.link, target.p_N, target.nhat_N, 0.0});
   }
-  return HasOpposedPair(reached, limits.min_opposed_contacts);
+  return ReachesOpposedTargets(grasp.contacts, targets,
+                               limits.max_target_distance,
+                               limits.min_opposed_contacts);
 }
 
 RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
@@ -341,7 +334,7 @@ ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed) {
   std::vector<RigidTransform> starts{task.X_NH};
-  if (parameters.replan.fit_start) {
+  if (parameters.replan.aimed_starts) {
     starts.push_back(
         Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
   }
@@ -351,27 +344,15 @@ ReplanResult Replan(const HandShape& hand, const TransferTask& task,
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
                       const Grasp& transferred, const Solid& whole,
                       const Parameters& parameters, uint64_t seed) {
-  RigidTransform start = transferred.configuration.X_OH;
-  const auto X_HL = CalcLinkPoses(hand.model(), transferred.q_pregrasp);
-  const auto palm_collides = [&](const RigidTransform& X_NH) {
-    return hand.link(0) && LinkCollides(*hand.link(0), X_NH * X_HL[0], whole);
-  };
-  for (double retreat = kRetreatStep;
-       retreat <= kMaxRetreat && palm_collides(start);
-       retreat += kRetreatStep) {
-    start.translation = transferred.configuration.X_OH.translation -
-                        retreat * transferred.approach_O;
-  }
-  if (palm_collides(start)) {
-    return {TransferOutcome::kPalmCollision, std::nullopt};
-  }
   TransferTask on_whole = task;
   on_whole.q_pregrasp = transferred.q_pregrasp;
-  std::vector<RigidTransform> starts{start};
-  if (parameters.replan.fit_start) {
+  std::vector<RigidTransform> starts{transferred.configuration.X_OH};
+  if (parameters.replan.aimed_starts) {
     starts.push_back(task.X_NH);
     starts.push_back(
         Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
+  } else if (PalmCollides(hand, starts[0], transferred.q_pregrasp, whole)) {
+    return {TransferOutcome::kPalmCollision, std::nullopt};
   }
   return Replanner(hand, on_whole, whole, parameters, seed).Run(starts);
 }

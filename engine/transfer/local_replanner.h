@@ -34,10 +34,6 @@ struct ReplanResult {
   std::optional<Grasp> grasp;  ///< Set when the outcome is kSucceeded.
 };
 
-/** True when two targets oppose each other: their normals differ by more than a
- right angle. */
-bool HasOpposedPair(const std::vector<Eigen::Vector3d>& normals, int least);
-
 /** What section 8 asks of a transferred grasp beyond stability: the hand near
  T* X_EH, and opposed contacts near their targets. */
 bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
@@ -49,7 +45,7 @@ bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
 RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 
 /** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
- fit_start, from FitWrist(). Each sample that collides is replaced by up to
+ aimed_starts, from FitWrist(). Each sample that collides is replaced by up to
  extra_samples others; each free one closes its fingers, and the stable,
  reachable, near-enough grasp with the largest ε is the answer. Deterministic
  for a seed. @paper{Sec. V-B} */
@@ -57,8 +53,9 @@ ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed);
 
-/** Assembly: the grasp of the part on the whole object. When the palm collides,
- small retreats are tried; the annealing then works on the whole object.
+/** Assembly: the grasp of the part on the whole object, replanned there from
+ where it is and, with aimed_starts, from T* X_EH and FitWrist(). Without them,
+ a palm that collides ends it, as in the paper.
  @paper{Sec. V-C} */
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
                       const Grasp& transferred, const Solid& whole,

@@ -126,11 +126,5 @@ TEST_F(GripperTask, TheBaselineClosesWhereItStands) {
   EXPECT_EQ(CalcOpenCloseEpsilon(hand_, task_, wide, parameters_), 0.0);
 }
 
-TEST(OpposedPair, NeedsTwoNormalsMoreThanARightAngleApart) {
-  EXPECT_TRUE(HasOpposedPair({{1, 0, 0}, {-1, 0, 0}}, 2));
-  EXPECT_FALSE(HasOpposedPair({{1, 0, 0}, {0, 1, 0}}, 2));
-  EXPECT_FALSE(HasOpposedPair({{1, 0, 0}}, 2));
-}
-
 }  // namespace
 }  // namespace graspdb
