@@ -53,6 +53,7 @@ Parameters MakePaperParameters() {
   p.swarm.min_robustness = 0.0;
   p.swarm.patience = p.swarm.iterations;
   p.mapping.affine = false;
+  p.mapping.warp = false;
   p.replan.cycles = 1;
   p.replan.aimed_starts = false;
   p.replan.iterations = 300;

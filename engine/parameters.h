@@ -194,6 +194,7 @@ struct MappingParameters {
   int neighbours{6};
   double consistency{0.08};
   bool affine{true};
+  bool warp{true};
   bool scale{false};
 
   template <class Self, class F>
@@ -211,6 +212,8 @@ struct MappingParameters {
     f("affine", self.affine,
       ParameterInfo{"1", 0, 1,
                     "ours: contacts map under an affine refinement of T*"});
+    f("warp", self.warp,
+      ParameterInfo{"1", 0, 1, "ours: and bent onto the novel surface"});
     f("scale", self.scale,
       ParameterInfo{"1", 0, 1, "ours: similarity; the paper is rigid"});
   }
@@ -227,7 +230,7 @@ struct ReplanParameters {
   double joint_range{0.35};
   int iterations{60};
   int patience{15};
-  int cycles{4};
+  int cycles{8};
   bool aimed_starts{true};
   int extra_samples{20};
   double initial_temperature{10.0};

@@ -16,6 +16,7 @@
 #include "engine/quality/opposed_contacts.h"
 #include "engine/quality/wrench_space.h"
 #include "engine/registration/surface_alignment.h"
+#include "engine/registration/surface_warp.h"
 #include "engine/transfer/contact_map.h"
 #include "engine/transfer/local_replanner.h"
 
@@ -131,20 +132,25 @@ class Transferrer {
                                      CalcStart(*found, mapping.scale), options);
     pair.map = std::make_unique<ContactMap>(
         samples_E, samples_N,
-        CalcPointMap(*found, samples_E, samples_N, options), *pair.index_E,
+        MoveSamples(*found, samples_E, samples_N, options), *pair.index_E,
         pair.solid_N->index(), mapping);
     alignment = {pair.alignment.X_NE, pair.alignment.scale,
                  pair.alignment.residual, pair.map->CalcMappedShare()};
   }
 
-  // Where the example's points lie on the novel part.
-  AffineMap CalcPointMap(const Part& part_E, const SurfaceSamples& samples_E,
-                         const SurfaceSamples& samples_N,
-                         AlignmentOptions options) const {
-    options.scale = parameters_.mapping.affine;
-    return RefineAlignment(samples_E, samples_N,
-                           CalcStart(part_E, options.scale), options)
-        .map_NE;
+  // Where the example's samples lie on the novel part.
+  SurfaceSamples MoveSamples(const Part& part_E,
+                             const SurfaceSamples& samples_E,
+                             const SurfaceSamples& samples_N,
+                             AlignmentOptions options) const {
+    const MappingParameters& mapping = parameters_.mapping;
+    options.scale = mapping.affine;
+    const SurfaceSamples moved = MapSamples(
+        samples_E, RefineAlignment(samples_E, samples_N,
+                                   CalcStart(part_E, options.scale), options)
+                       .map_NE);
+    return mapping.warp ? WarpSamples(moved, samples_N, mapping.normal_weight)
+                        : moved;
   }
 
   // The whole objects' alignment, which a body's handle has turned right; a

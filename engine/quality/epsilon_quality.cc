@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <queue>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "engine/base/contract.h"
 #include "engine/base/random.h"
 
 namespace graspdb {
@@ -76,7 +77,9 @@ std::optional<Wrench> CalcOrthogonal(
 // An inner approximation of the hull that grows one point at a time.
 class ExpandingPolytope {
  public:
-  explicit ExpandingPolytope(const Wrenches& points) : points_(points) {}
+  explicit ExpandingPolytope(const Wrenches& points) : points_(points) {
+    GRASPDB_EXPECTS(points.cols() < 1 << 16);
+  }
 
   // False when the points do not span six dimensions.
   bool Start() {
@@ -212,7 +215,7 @@ class ExpandingPolytope {
     // One facet per ridge of the horizon; new ones meet along ridges that
     // leave out one vertex of theirs.
     struct OpenRidge {
-      std::array<int, kDim - 2> vertices;
+      uint64_t vertices;  // Sixteen bits each, ascending.
       int facet;
       int slot;
     };
@@ -230,19 +233,24 @@ class ExpandingPolytope {
       *std::find(back.begin(), back.end(), seen) = index;
       for (int k = 0; k < kDim; ++k) {
         if (k == slot) continue;
-        OpenRidge ridge{{}, index, k};
+        std::array<int, kDim - 2> vertices;
         int n = 0;
         for (int i = 0; i < kDim; ++i) {
-          if (i != k && i != slot) ridge.vertices[n++] = facet.vertices[i];
+          if (i != k && i != slot) vertices[n++] = facet.vertices[i];
         }
-        std::sort(ridge.vertices.begin(), ridge.vertices.end());
-        open.push_back(ridge);
+        std::sort(vertices.begin(), vertices.end());
+        uint64_t key = 0;
+        for (const int v : vertices) key = key << 16 | static_cast<uint64_t>(v);
+        open.push_back({key, index, k});
       }
     }
-    std::sort(
-        open.begin(), open.end(), [](const OpenRidge& a, const OpenRidge& b) {
-          return std::tie(a.vertices, a.facet) < std::tie(b.vertices, b.facet);
-        });
+    // A ridge's two facets: the order of equal keys does not matter but must
+    // not depend on the sort.
+    std::sort(open.begin(), open.end(),
+              [](const OpenRidge& a, const OpenRidge& b) {
+                return a.vertices != b.vertices ? a.vertices < b.vertices
+                                                : a.facet < b.facet;
+              });
     if (open.size() % 2 != 0) return false;
     for (size_t i = 0; i < open.size(); i += 2) {
       const OpenRidge& a = open[i];

@@ -51,8 +51,8 @@ std::optional<Eigen::Vector3d> CalcMeanImage(
 }  // namespace
 
 ContactMap::ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
-                       const AffineMap& map_NE, const SurfaceIndex& index_E,
-                       const SurfaceIndex& index_N,
+                       const SurfaceSamples& moved_E,
+                       const SurfaceIndex& index_E, const SurfaceIndex& index_N,
                        const MappingParameters& parameters)
     : samples_E_(std::move(samples_E)),
       samples_N_(std::move(samples_N)),
@@ -62,13 +62,11 @@ ContactMap::ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
       tree_E_(samples_E_.points),
       tree_N_(samples_N_.points) {
   GRASPDB_EXPECTS(samples_E_.size() > 0 && samples_N_.size() > 0);
+  GRASPDB_EXPECTS(moved_E.size() == samples_E_.size());
   Eigen::Vector3d low = samples_E_.points[0], high = samples_E_.points[0];
-  SurfaceSamples moved_E = samples_E_;  // A under map_NE, in frame N.
   for (int i = 0; i < samples_E_.size(); ++i) {
     low = low.cwiseMin(samples_E_.points[i]);
     high = high.cwiseMax(samples_E_.points[i]);
-    moved_E.points[i] = map_NE * samples_E_.points[i];
-    moved_E.normals[i] = map_NE.MapNormal(samples_E_.normals[i]);
   }
   max_error_ = parameters.consistency * (high - low).norm();
   const KdTree tree_moved_E(moved_E.points);

@@ -9,7 +9,6 @@
 #include "engine/geometry/surface_samples.h"
 #include "engine/math/kd_tree.h"
 #include "engine/parameters.h"
-#include "engine/registration/sample_matching.h"
 
 namespace graspdb {
 
@@ -21,14 +20,13 @@ class ContactMap {
  public:
   /** @param samples_E  The paper's A: points and normals expressed in frame E.
    @param samples_N  The paper's B: points and normals expressed in frame N.
-   @param map_NE  Where the points of E lie on N: the paper's (R*, T*), or an
-     affine refinement of it.
+   @param moved_E  A in frame N: under the paper's (R*, T*), or a refinement.
    @param index_N  The novel part's surface, to which images are projected;
      outlives the map.
    @param index_E  The example part's surface; outlives the map.
-   @pre Neither sample set is empty. */
+   @pre Neither sample set is empty; moved_E has as many as samples_E. */
   ContactMap(SurfaceSamples samples_E, SurfaceSamples samples_N,
-             const AffineMap& map_NE, const SurfaceIndex& index_E,
+             const SurfaceSamples& moved_E, const SurfaceIndex& index_E,
              const SurfaceIndex& index_N, const MappingParameters& parameters);
 
   /** F(a) for each a of A: the nearest b whose normal is within δ of R* n_a;
