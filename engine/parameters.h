@@ -230,7 +230,7 @@ struct ReplanParameters {
   double joint_range{0.35};
   int iterations{60};
   int patience{15};
-  int cycles{8};
+  int cycles{16};
   bool aimed_starts{true};
   int extra_samples{20};
   double initial_temperature{10.0};

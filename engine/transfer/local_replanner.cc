@@ -17,6 +17,11 @@ namespace {
 constexpr double kRetreatStep = 0.0025;
 // Of the transfer's limits, so that rounding does not lead beyond them.
 constexpr double kWithinLimits = 0.98;
+// Annealings that follow one another draw from nearer and from farther around,
+// shares of the trust region.
+constexpr double kReaches[] = {1.0, 0.5, 1.5};
+// How often a start is fitted again with the fingers as they closed there.
+constexpr int kRefits = 2;
 // How far the hand's frame reaches when the wrist is fitted, metres.
 constexpr double kFrameLength = 0.05;
 
@@ -81,7 +86,7 @@ class Replanner {
     std::vector<Rated> ranked = RankStarts(starts);
     int cycle = 0;
     do {
-      Anneal(ranked[cycle % ranked.size()]);
+      Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles);
     if (!best_) return {furthest_, std::nullopt};
     return {TransferOutcome::kSucceeded, std::move(best_)};
@@ -103,8 +108,15 @@ class Replanner {
     std::vector<Rated> ranked;
     for (const RigidTransform& X_NH : starts) {
       Sample sample{X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
-      if (replan_.aimed_starts) DrawBack(sample);
-      ranked.push_back({sample, Evaluate(sample)});
+      TransferTask closed = task_;
+      for (int refit = 0; refit <= kRefits; ++refit) {
+        if (replan_.aimed_starts) DrawBack(sample);
+        ranked.push_back({sample, Evaluate(sample, &closed.q)});
+        if (!replan_.aimed_starts) break;
+        // The fingers have met a surface of another size: fit what they are.
+        sample.X_NH = Confine(FitWrist(hand_.model(), closed), task_.X_NH,
+                              parameters_.transfer);
+      }
     }
     std::stable_sort(
         ranked.begin(), ranked.end(),
@@ -135,7 +147,7 @@ class Replanner {
   }
 
   // Simulated annealing, as printed.
-  void Anneal(const Rated& start) {
+  void Anneal(const Rated& start, double reach) {
     Sample here = start.sample;
     double here_value = start.value;
     int since_gain = 0;
@@ -143,7 +155,8 @@ class Replanner {
          ++i) {
       const double cooling = static_cast<double>(i) / replan_.iterations;
       const double epsilon_before = BestEpsilon();
-      const std::optional<Sample> next = DrawFree(here, 1.0 - 0.8 * cooling);
+      const std::optional<Sample> next =
+          DrawFree(here, reach * (1.0 - 0.8 * cooling));
       if (next) {
         const double value = Evaluate(*next);
         const double temperature =
@@ -167,7 +180,8 @@ class Replanner {
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
   // value of Eq. (6), or infinity in collision.
-  double Evaluate(const Sample& sample) {
+  // @param[out] q_closed  When given, the joints after closing, if any.
+  double Evaluate(const Sample& sample, Eigen::VectorXd* q_closed = nullptr) {
     const Eigen::VectorXd q = hand_.model().CalcCoupledJoints(sample.motors);
     const EvaluatedGrasp evaluated = CloseAndJudge(
         hand_, sample.X_NH, q, solid_, parameters_, Precision::kEstimated);
@@ -177,6 +191,7 @@ class Replanner {
       return std::numeric_limits<double>::infinity();
     }
     const Grasp& grasp = evaluated.grasp;
+    if (q_closed != nullptr) *q_closed = grasp.configuration.q;
     if (evaluated.ok() && grasp.quality.epsilon > BestEpsilon() &&
         Counts(grasp)) {
       // What is kept is exact.
