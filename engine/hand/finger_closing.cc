@@ -27,6 +27,11 @@ constexpr double kSelfContactMotion = 0.0001;
 constexpr double kSelfCollisionStep = 0.010;
 constexpr double kRoughSelfCollisionStep = 0.040;
 
+// A finger that stands in the solid draws back by this motor travel first.
+constexpr double kRetreatStep = 0.002;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // A finger's joints as a function of its motor's travel: linear between knots.
 struct FingerPath {
   struct Knot {
@@ -76,8 +81,9 @@ class FingerMarch {
     AddKnot();
     while (StartPhase()) {
       const int touching = MarchToContact(travel_ + FindLimitStep());
-      if (touching < 0) break;
+      // At the end of the way, too: the estimate may have seen no contact.
       if (precision_ == Precision::kExact) BackOff();
+      if (touching < 0) break;
       AddKnot();
       blocked_ = touching + 1;
     }
@@ -118,7 +124,7 @@ class FingerMarch {
 
   // Motor travel until the first joint limit.
   double FindLimitStep() const {
-    double travel = std::numeric_limits<double>::infinity();
+    double travel = kInfinity;
     for (size_t k = 0; k < chain_.size(); ++k) {
       if (speed_[k] > 0.0) {
         travel = std::min(
@@ -266,6 +272,31 @@ class HandMotion {
     return q;
   }
 
+  // Draws back fingers that stand in the solid: one that met another finger may
+  // have been stopped on its way through something thin.
+  void RetreatFrom(const Solid& solid, const RigidTransform& X_OH) {
+    for (Finger& finger : fingers_) {
+      const HandActuator& actuator = hand_.model().actuators()[finger.actuator];
+      const auto collides = [&] {
+        const auto X_HL = CalcLinkPoses(hand_.model(), CalcJoints(kInfinity));
+        for (size_t k = 0; k < actuator.joints.size(); ++k) {
+          for (const int i :
+               hand_.chain_links(finger.actuator, static_cast<int>(k))) {
+            if (hand_.link(i) &&
+                LinkCollides(*hand_.link(i), X_OH * X_HL[i], solid)) {
+              return true;
+            }
+          }
+        }
+        return false;
+      };
+      for (double back = kRetreatStep; finger.stop > 0.0 && collides();
+           back *= 2.0) {
+        finger.stop = std::max(0.0, finger.stop - back);
+      }
+    }
+  }
+
   // Stops fingers where they meet each other or the palm.
   void StopAtSelfCollisions(double max_step) {
     double end = 0.0;
@@ -353,7 +384,8 @@ Eigen::VectorXd CloseFingers(const HandShape& hand, const RigidTransform& X_OH,
   motion.StopAtSelfCollisions(precision == Precision::kExact
                                   ? kSelfCollisionStep
                                   : kRoughSelfCollisionStep);
-  return motion.CalcJoints(std::numeric_limits<double>::infinity());
+  if (precision == Precision::kExact) motion.RetreatFrom(solid, X_OH);
+  return motion.CalcJoints(kInfinity);
 }
 
 }  // namespace graspdb

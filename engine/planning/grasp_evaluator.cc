@@ -73,9 +73,8 @@ EvaluatedGrasp CloseAndJudge(const HandShape& hand, const RigidTransform& X_OH,
   }
   grasp.configuration.q =
       CloseFingers(hand, X_OH, q_pregrasp, solid, precision);
-  grasp.contacts = ExtractContacts(
-      hand, X_OH, CalcLinkPoses(hand.model(), grasp.configuration.q), solid,
-      parameters.contact);
+  const auto X_HL = CalcLinkPoses(hand.model(), grasp.configuration.q);
+  grasp.contacts = ExtractContacts(hand, X_OH, X_HL, solid, parameters.contact);
   if (grasp.contacts.size() < 2) {
     result.failure = GraspFailure::kNoContact;
     return result;
