@@ -60,7 +60,7 @@ struct TransferRecord {
    empty where a contact has no target. One per source contact. */
   std::vector<std::optional<Eigen::Vector3d>> targets_N;
   double example_epsilon{0.0};           ///< Source grasp about its part.
-  double example_epsilon_whole{0.0};     ///< Source grasp about its whole.
+  double example_epsilon_whole{0.0};     ///< Closed on its whole; 0: fails.
   double open_close_epsilon_part{0.0};   ///< Baseline; 0 when it fails.
   double open_close_epsilon_whole{0.0};  ///< Baseline; 0 when it fails.
   double robust{0.0};       ///< Share of 32 perturbed copies that stay stable.

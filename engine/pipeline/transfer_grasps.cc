@@ -93,9 +93,10 @@ class Transferrer {
     const int count = static_cast<int>(request_.novel_parts.size());
     pairs_.resize(count);
     result.alignments.resize(count);
-    mass_E_ = CalcMassProperties(request_.example.mesh_O);
-    tbb::parallel_for(-1, count, [&](int p) {
-      if (p < 0) {
+    tbb::parallel_for(-2, count, [&](int p) {
+      if (p == -2) {
+        whole_E_ = std::make_unique<Solid>(request_.example.mesh_O);
+      } else if (p == -1) {
         if (request_.assemble) {
           whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O);
         }
@@ -175,7 +176,9 @@ class Transferrer {
     const Grasp& source = request_.grasp_spaces[p]->grasps[s];
     record.example_epsilon = source.quality.epsilon;
     record.example_epsilon_whole =
-        CalcEpsilon(source.contacts, mass_E_, parameters_.contact);
+        std::max(0.0, CloseAndJudge(hand_, source.configuration.X_OH,
+                                    source.q_pregrasp, *whole_E_, parameters_)
+                          .grasp.quality.epsilon);
     if (!pair.map) return;
 
     // Sec. V-A: where its contacts lie on the novel part.
@@ -256,7 +259,7 @@ class Transferrer {
   const Parameters& parameters_;
   ExecutionContext& context_;
   const HandShape hand_;
-  MassProperties mass_E_;
+  std::unique_ptr<Solid> whole_E_;
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
 };
