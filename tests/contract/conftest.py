@@ -20,7 +20,7 @@ QUICK = {
 def binary():
     path = os.environ.get("GRASPDB_BINARY")
     if not path:
-        pytest.skip("GRASPDB_BINARY is not set")
+        pytest.fail("GRASPDB_BINARY is not set: run these tests by ctest")
     return path
 
 
