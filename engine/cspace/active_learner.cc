@@ -6,8 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-
+#include "engine/base/parallel.h"
 #include "engine/cspace/svm.h"
 
 namespace graspdb {
@@ -31,7 +30,7 @@ Labelled DrawAndLabel(const ConfigurationSpace& space, int count,
   Labelled result;
   result.postures.resize(count);
   result.collides.resize(count);
-  tbb::parallel_for(0, count, [&](int i) {
+  ParallelFor(count, [&](int i) {
     result.postures[i] = draw(i);
     result.collides[i] = space.Collides(result.postures[i]);
   });
@@ -153,7 +152,7 @@ class ActiveLearner {
   // The mean of the shares of hits and of misses that are told right.
   double CalcBalancedAccuracy(const Svm& svm, const Labelled& test) const {
     std::vector<char> right(test.postures.size());
-    tbb::parallel_for(size_t{0}, test.postures.size(), [&](size_t i) {
+    ParallelFor(static_cast<int>(test.postures.size()), [&](int i) {
       const bool says =
           svm.CalcDecisionValue(space_.CalcFeatures(test.postures[i])) > 0.0;
       right[i] = says == static_cast<bool>(test.collides[i]);

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <tbb/parallel_for.h>
-
 #include "engine/base/contract.h"
+#include "engine/base/parallel.h"
 
 namespace graspdb {
 namespace {
@@ -48,7 +47,7 @@ DistanceField::DistanceField(const TriangleMesh& mesh_M,
 }
 
 void DistanceField::FillCoarse(const SurfaceIndex& index_M) {
-  tbb::parallel_for(0, (count_[2] + 1) / kCoarse, [&](int slice) {
+  ParallelFor((count_[2] + 1) / kCoarse, [&](int slice) {
     const int iz = kCoarse * slice;
     for (int iy = 0; iy < count_[1]; iy += kCoarse) {
       // The neighbour's value bounds the search.
@@ -64,7 +63,7 @@ void DistanceField::FillCoarse(const SurfaceIndex& index_M) {
 void DistanceField::FillRest(const SurfaceIndex& index_M) {
   // A point one cell from the surface, its cell's corners, their coarse nodes.
   const double band = (1.0 + 2.0 * std::sqrt(3.0)) * cell_;
-  tbb::parallel_for(0, count_[2], [&](int iz) {
+  ParallelFor(count_[2], [&](int iz) {
     for (int iy = 0; iy < count_[1]; ++iy) {
       for (int ix = 0; ix < count_[0]; ++ix) {
         const std::array<int, 3> odd{ix % kCoarse, iy % kCoarse, iz % kCoarse};

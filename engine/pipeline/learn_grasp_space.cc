@@ -1,8 +1,8 @@
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "engine/cspace/active_learner.h"
 #include "engine/grasp_engine.h"
-#include "engine/pipeline/thread_arena.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/planning/grasp_space_search.h"
 #include "engine/quality/epsilon_quality.h"

@@ -4,13 +4,11 @@
 #include <mutex>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-
+#include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/geometry/surface_sampling.h"
 #include "engine/grasp_engine.h"
 #include "engine/pipeline/source_grasps.h"
-#include "engine/pipeline/thread_arena.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/quality/epsilon_quality.h"
 #include "engine/quality/opposed_contacts.h"
@@ -72,14 +70,14 @@ class Transferrer {
     std::atomic<int> done{0};
     std::mutex progress_mutex;
     std::atomic<bool> complete{true};
-    tbb::parallel_for(size_t{0}, result.records.size(), [&](size_t i) {
+    const int count = static_cast<int>(result.records.size());
+    ParallelFor(count, [&](int i) {
       if (context_.Cancelled()) {
         complete = false;
         return;
       }
       TransferOne(result.records[i]);
-      const double share = static_cast<double>(++done) /
-                           static_cast<double>(result.records.size());
+      const double share = static_cast<double>(++done) / count;
       const std::lock_guard lock(progress_mutex);
       context_.ReportProgress("transferring", 0.1 + 0.9 * share);
     });
@@ -93,14 +91,14 @@ class Transferrer {
     const int count = static_cast<int>(request_.novel_parts.size());
     pairs_.resize(count);
     result.alignments.resize(count);
-    tbb::parallel_for(-2, count, [&](int p) {
-      if (p == -2) {
+    ParallelFor(count + 2, [&](int task) {
+      if (task == 0) {
         whole_E_ = std::make_unique<Solid>(request_.example.mesh_O);
-      } else if (p == -1) {
+      } else if (task == 1) {
         if (request_.assemble) {
           whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O);
         }
-      } else if (request_.grasp_spaces[p]) {
+      } else if (const int p = task - 2; request_.grasp_spaces[p]) {
         PreparePart(p, result.alignments[p]);
       }
     });

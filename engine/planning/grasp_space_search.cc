@@ -7,9 +7,8 @@
 #include <set>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-
 #include "engine/base/contract.h"
+#include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/planning/grasp_archive.h"
@@ -94,7 +93,7 @@ class Swarm {
          ++iteration) {
       // Everything of one particle depends on its own stream and on the bests
       // of the iteration before, so threads change nothing.
-      tbb::parallel_for(0, swarm_.particles, [&](int i) {
+      ParallelFor(swarm_.particles, [&](int i) {
         Random random(DeriveSeed(seed_, {uint64_t(iteration), uint64_t(i)}));
         Particle& particle = particles_[i];
         if (iteration == 0 || particle.stale > swarm_.patience) {

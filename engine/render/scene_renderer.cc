@@ -7,10 +7,9 @@
 #include <optional>
 
 #include <embree3/rtcore.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include "engine/base/contract.h"
+#include "engine/base/parallel.h"
 #include "engine/math/rigid_transform.h"
 
 namespace graspdb {
@@ -394,9 +393,7 @@ Image RenderScene(const std::vector<RenderItem>& items, const View& view) {
                  &image.rgb[3 * (static_cast<size_t>(y) * view.width + x)]);
     }
   };
-  tbb::task_arena arena(view.threads > 0 ? view.threads
-                                         : tbb::task_arena::automatic);
-  arena.execute([&] { tbb::parallel_for(0, view.height, render_row); });
+  RunInArena(view.threads, [&] { ParallelFor(view.height, render_row); });
   return image;
 }
 

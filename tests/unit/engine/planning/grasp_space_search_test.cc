@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
+#include "engine/base/parallel.h"
 #include "engine/cspace/active_learner.h"
 #include "engine/planning/grasp_archive.h"
 #include "engine/planning/grasp_evaluator.h"
@@ -34,8 +34,7 @@ class GripperSwarm : public ::testing::Test {
   }
 
   GraspSearchResult Run(int threads) {
-    tbb::task_arena arena(threads);
-    return arena.execute([&] {
+    return RunWithThreads(threads, [&] {
       return SearchGraspSpace(hand_, box_, nullptr, space_, seeds_, parameters_,
                               5, context_);
     });
