@@ -10,7 +10,7 @@
 #include "engine/base/result.h"
 #include "engine/cspace/active_learner.h"
 #include "engine/hand/hand_model.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 #include "engine/segmentation/part.h"
 #include "engine/segmentation/part_segmentation.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "server/records.h"
 
 /** @file

@@ -9,7 +9,7 @@
 
 #include "engine/base/result.h"
 #include "engine/grasp_engine.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/segmentation/part_segmentation.h"
 
 /** @file

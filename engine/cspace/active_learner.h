@@ -5,7 +5,7 @@
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/cspace/configuration_space.h"
-#include "engine/parameters.h"
+#include "engine/parameters/learning_parameters.h"
 
 namespace graspdb {
 

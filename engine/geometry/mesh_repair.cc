@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <new>
-#include <numeric>
 #include <optional>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -38,6 +34,7 @@
 #include <fmt/core.h>
 
 #include "engine/base/contract.h"
+#include "engine/geometry/soup_cleaning.h"
 
 namespace graspdb {
 namespace {
@@ -52,9 +49,6 @@ using Face = SurfaceMesh::Face_index;
 using Halfedge = SurfaceMesh::Halfedge_index;
 
 // Lengths as shares of the diagonal of the soup's box.
-constexpr double kWeldDistance = 1e-5;      // Also for T-junctions.
-constexpr double kDegenerateHeight = 1e-8;  // A triangle's smallest height.
-constexpr double kPlanarThickness = 1e-4;
 constexpr double kWrapAlpha = 1.0 / 75.0;
 constexpr double kWrapOffset = 1.0 / 1000.0;
 // The share of the offset that is taken back after wrapping.
@@ -69,9 +63,8 @@ constexpr double kMostFragmentVolume = 0.02;
 // Where that makes the box smaller by this share of the diagonal, wrapping is
 // tried, which may reach what was dropped.
 constexpr double kMostLostExtent = 0.01;
-// Beyond these, mending step by step is slower than wrapping.
+// Beyond this, mending step by step is slower than wrapping.
 constexpr std::size_t kMostShells = 100;
-constexpr std::size_t kMostBorderEdges = 20'000;
 // The cubes of the lengths, in edges, of all holes that are filled in the best
 // way.
 constexpr double kMostHoleWork = 1.5e7;
@@ -81,42 +74,18 @@ constexpr int kManyTriangles = 100'000;
 // Rounds of cutting crossing faces out, each with one more ring around them.
 constexpr int kCuttingRounds = 5;
 
+// A TriangleSoup of CGAL's points.
 struct Soup {
   std::vector<Point> points;
-  std::vector<std::array<std::size_t, 3>> faces;
-};
-
-std::string Count(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-// Collects the sentences; a step that did nothing says nothing.
-class Log {
- public:
-  void Add(const char* verb, std::size_t count, const char* one,
-           const char* many) {
-    if (count > 0) {
-      sentences_.push_back(std::string(verb) + " " + Count(count, one, many));
-    }
-  }
-  void Add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
-  std::vector<std::string> sentences() const { return sentences_; }
-
- private:
-  std::vector<std::string> sentences_;
+  std::vector<TriangleSoup::Face> faces;
 };
 
 Eigen::Vector3d ToEigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-Soup ToSoup(const TriangleMesh& mesh) {
-  Soup soup;
-  for (const Eigen::Vector3d& p : mesh.vertices()) {
+Soup ToSoup(const TriangleSoup& plain) {
+  Soup soup{{}, plain.faces};
+  for (const Eigen::Vector3d& p : plain.points) {
     soup.points.emplace_back(p.x(), p.y(), p.z());
-  }
-  for (const Eigen::Vector3i& t : mesh.triangles()) {
-    soup.faces.push_back({static_cast<std::size_t>(t[0]),
-                          static_cast<std::size_t>(t[1]),
-                          static_cast<std::size_t>(t[2])});
   }
   return soup;
 }
@@ -177,261 +146,14 @@ bool IsSolid(const TriangleMesh& mesh) {
       kSmallestVolume * std::pow(mesh.diagonal(), 3)) {
     return false;
   }
-  const Soup soup = ToSoup(mesh);
+  const Soup soup = ToSoup(MakeSoup(mesh));
   return pmp::is_polygon_soup_a_polygon_mesh(soup.faces) &&
          IsOneSolid(ToSurfaceMesh(soup));
 }
 
-// ---- The soup: before there is any topology.
-
-// The distance that the points keep from their best plane, roughly: through the
-// first point, the one farthest from it, and the one farthest from their line.
-double CalcThickness(const std::vector<Eigen::Vector3d>& points) {
-  const auto farthest = [&points](const auto& distance) {
-    Eigen::Vector3d best = points.front();
-    for (const Eigen::Vector3d& p : points) {
-      if (distance(p) > distance(best)) best = p;
-    }
-    return best;
-  };
-  const Eigen::Vector3d a = points.front();
-  const Eigen::Vector3d b = farthest(
-      [&a](const Eigen::Vector3d& p) { return (p - a).squaredNorm(); });
-  const Eigen::Vector3d axis = (b - a).normalized();
-  const Eigen::Vector3d c = farthest([&](const Eigen::Vector3d& p) {
-    return axis.cross(p - a).squaredNorm();
-  });
-  const Eigen::Vector3d normal = axis.cross(c - a).normalized();
-  const auto height = [&](const Eigen::Vector3d& p) {
-    return std::abs(normal.dot(p - a));
-  };
-  return height(farthest(height));
-}
-
-using Edge = std::pair<std::size_t, std::size_t>;
-
-Edge MakeEdge(std::size_t a, std::size_t b) { return std::minmax(a, b); }
-
-// The edges that belong to one face only, sorted.
-std::vector<Edge> FindBorderEdges(const Soup& soup) {
-  std::vector<Edge> edges;
-  for (const auto& face : soup.faces) {
-    for (int k = 0; k < 3; ++k) {
-      edges.push_back(MakeEdge(face[k], face[(k + 1) % 3]));
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  std::vector<Edge> border;
-  for (auto it = edges.begin(); it != edges.end();) {
-    const auto next = std::upper_bound(it, edges.end(), *it);
-    if (next - it == 1) border.push_back(*it);
-    it = next;
-  }
-  return border;
-}
-
-// For each vertex at an open edge, the first such one within the distance: by a
-// grid of cells wider than it, so that few have to look into a second cell.
-// Vertices inside a closed surface stay apart, as in two parts that touch.
-std::vector<std::size_t> FindWelds(const TriangleMesh& mesh, const Soup& soup,
-                                   double distance) {
-  std::vector<bool> is_open(soup.points.size(), false);
-  for (const auto& [a, b] : FindBorderEdges(soup)) {
-    is_open[a] = is_open[b] = true;
-  }
-  const double cell = 8.0 * distance;
-  std::unordered_map<uint64_t, std::vector<std::size_t>> grid;
-  std::vector<std::size_t> weld(soup.points.size());
-  std::iota(weld.begin(), weld.end(), 0);
-  for (std::size_t i = 0; i < weld.size(); ++i) {
-    if (!is_open[i]) continue;
-    const Eigen::Vector3d p = mesh.vertices()[i] - mesh.box_min();
-    const auto key = [&](double dx, double dy, double dz) {
-      const auto index = [cell](double x) {
-        return static_cast<uint64_t>(std::max(0.0, x) / cell);
-      };
-      return index(p.x() + dx) << 42 | index(p.y() + dy) << 21 |
-             index(p.z() + dz);
-    };
-    for (int corner = 0; corner < 8 && weld[i] == i; ++corner) {
-      const auto found = grid.find(key(corner & 1 ? distance : -distance,
-                                       corner & 2 ? distance : -distance,
-                                       corner & 4 ? distance : -distance));
-      if (found == grid.end()) continue;
-      for (const std::size_t j : found->second) {
-        if ((mesh.vertices()[j] - mesh.vertices()[i]).norm() <= distance) {
-          weld[i] = j;
-          break;
-        }
-      }
-    }
-    if (weld[i] == i) grid[key(0, 0, 0)].push_back(i);
-  }
-  return weld;
-}
-
-double CalcSmallestHeight(const Soup& soup,
-                          const std::array<std::size_t, 3>& face) {
-  const Eigen::Vector3d a = ToEigen(soup.points[face[0]]);
-  const Eigen::Vector3d b = ToEigen(soup.points[face[1]]);
-  const Eigen::Vector3d c = ToEigen(soup.points[face[2]]);
-  const double longest =
-      std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
-}
-
-TriangleMesh DropUnusedVertices(const TriangleMesh& mesh, Log& log) {
-  std::vector<int> index(mesh.vertices().size(), -1);
-  for (const Eigen::Vector3i& t : mesh.triangles()) {
-    for (const int v : t) index[v] = 0;
-  }
-  std::vector<Eigen::Vector3d> vertices;
-  for (std::size_t v = 0; v < index.size(); ++v) {
-    if (index[v] < 0) continue;
-    index[v] = static_cast<int>(vertices.size());
-    vertices.push_back(mesh.vertices()[v]);
-  }
-  log.Add("dropped", index.size() - vertices.size(), "unused vertex",
-          "unused vertices");
-  std::vector<Eigen::Vector3i> triangles;
-  for (const Eigen::Vector3i& t : mesh.triangles()) {
-    triangles.emplace_back(index[t[0]], index[t[1]], index[t[2]]);
-  }
-  return TriangleMesh(std::move(vertices), std::move(triangles));
-}
-
-// Welds, drops degenerate and duplicate faces and what no face uses. In a
-// closed surface a face without height does its duty and stays.
-Soup MakeCleanSoup(const TriangleMesh& mesh, Log& log) {
-  const Soup all = ToSoup(mesh);
-  const bool closed = IsClosed(mesh);
-  const std::vector<std::size_t> weld =
-      FindWelds(mesh, all, kWeldDistance * mesh.diagonal());
-  std::set<std::array<std::size_t, 3>> seen;
-  std::vector<std::array<std::size_t, 3>> faces;
-  std::size_t degenerate = 0;
-  std::size_t duplicate = 0;
-  for (std::array<std::size_t, 3> face : all.faces) {
-    for (std::size_t& v : face) v = weld[v];
-    const bool collapsed =
-        face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-    if (collapsed || (!closed && CalcSmallestHeight(all, face) <=
-                                     kDegenerateHeight * mesh.diagonal())) {
-      ++degenerate;
-      continue;
-    }
-    std::array<std::size_t, 3> corners = face;
-    std::sort(corners.begin(), corners.end());
-    if (seen.insert(corners).second) {
-      faces.push_back(face);
-    } else {
-      ++duplicate;
-    }
-  }
-  std::vector<bool> used(all.points.size(), false);
-  for (const auto& face : faces) {
-    for (const std::size_t v : face) used[v] = true;
-  }
-  Soup soup;
-  std::size_t welded = 0;
-  std::vector<std::size_t> index(all.points.size());
-  for (std::size_t v = 0; v < all.points.size(); ++v) {
-    index[v] = soup.points.size();
-    if (used[v]) soup.points.push_back(all.points[v]);
-    if (weld[v] != v) ++welded;
-  }
-  for (const auto& face : faces) {
-    soup.faces.push_back({index[face[0]], index[face[1]], index[face[2]]});
-  }
-  log.Add("welded", welded, "vertex", "vertices");
-  log.Add("dropped", degenerate, "degenerate face", "degenerate faces");
-  log.Add("dropped", duplicate, "duplicate face", "duplicate faces");
-  return soup;
-}
-
-// The border vertices that lie within the distance of a border edge's inside,
-// in order from the edge's first vertex to its second.
-std::map<Edge, std::vector<std::size_t>> FindTJunctions(const Soup& soup,
-                                                        double distance) {
-  std::map<Edge, std::vector<std::size_t>> junctions;
-  const std::vector<Edge> border = FindBorderEdges(soup);
-  if (border.size() > kMostBorderEdges) return junctions;
-  std::set<std::size_t> border_vertices;
-  for (const Edge& edge : border) {
-    border_vertices.insert({edge.first, edge.second});
-  }
-  std::vector<std::pair<double, std::size_t>> by_x;
-  for (const std::size_t v : border_vertices) {
-    by_x.emplace_back(soup.points[v].x(), v);
-  }
-  std::sort(by_x.begin(), by_x.end());
-  for (const Edge& edge : border) {
-    const Eigen::Vector3d a = ToEigen(soup.points[edge.first]);
-    const Eigen::Vector3d b = ToEigen(soup.points[edge.second]);
-    const double length = (b - a).norm();
-    const Eigen::Vector3d direction = (b - a) / length;
-    std::vector<std::pair<double, std::size_t>> inside;
-    const double end = std::max(a.x(), b.x()) + distance;
-    for (auto it = std::lower_bound(
-             by_x.begin(), by_x.end(),
-             std::pair(std::min(a.x(), b.x()) - distance, std::size_t{0}));
-         it != by_x.end() && it->first <= end; ++it) {
-      const Eigen::Vector3d to_v = ToEigen(soup.points[it->second]) - a;
-      const double along = direction.dot(to_v);
-      if (along > distance && along < length - distance &&
-          (to_v - along * direction).norm() <= distance) {
-        inside.emplace_back(along, it->second);
-      }
-    }
-    std::sort(inside.begin(), inside.end());
-    for (const auto& [along, v] : inside) junctions[edge].push_back(v);
-  }
-  return junctions;
-}
-
-// Cuts faces so that no vertex lies inside another face's border edge.
-void SplitAtTJunctions(Soup& soup, double distance, Log& log) {
-  auto junctions = FindTJunctions(soup, distance);
-  log.Add("split", junctions.size(), "edge at T-junctions",
-          "edges at T-junctions");
-  std::vector<std::array<std::size_t, 3>> faces;
-  for (const auto& whole : soup.faces) {
-    std::vector<std::array<std::size_t, 3>> work{whole};
-    while (!work.empty()) {
-      const auto face = work.back();
-      work.pop_back();
-      int k = 0;
-      auto found = junctions.end();
-      for (; k < 3 && found == junctions.end(); ++k) {
-        found = junctions.find(MakeEdge(face[k], face[(k + 1) % 3]));
-      }
-      if (found == junctions.end()) {
-        faces.push_back(face);
-        continue;
-      }
-      // Split at the edge's first vertex; what is left of the edge inherits the
-      // others, again in order from its smaller index on.
-      const std::size_t v = found->second.front();
-      const std::size_t end = found->first.second;
-      std::vector<std::size_t> others(found->second.begin() + 1,
-                                      found->second.end());
-      junctions.erase(found);
-      if (v > end) std::reverse(others.begin(), others.end());
-      if (!others.empty()) junctions[MakeEdge(v, end)] = std::move(others);
-      const std::size_t a = face[k - 1];
-      const std::size_t b = face[k % 3];
-      const std::size_t c = face[(k + 1) % 3];
-      if (v == c) continue;  // The face is a sliver along its own edge.
-      work.push_back({v, b, c});
-      work.push_back({a, v, c});
-    }
-  }
-  soup.faces = std::move(faces);
-}
-
 // Consistent winding; splits edges and vertices where more than two faces or
 // one fan meet.
-void Orient(Soup& soup, Log& log) {
+void Orient(Soup& soup, RepairLog& log) {
   const auto before = soup.faces;
   pmp::orient_polygon_soup(soup.points, soup.faces);
   std::size_t turned = 0;
@@ -542,7 +264,7 @@ struct MendedShells {
 };
 
 MendedShells MendShells(const std::vector<SurfaceMesh>& shells,
-                        double smallest_volume, Log& log) {
+                        double smallest_volume, RepairLog& log) {
   MendedShells mended;
   std::size_t holes = 0;
   std::size_t added = 0;
@@ -575,8 +297,9 @@ MendedShells MendShells(const std::vector<SurfaceMesh>& shells,
   }
   mended.sheet_area /= area_of_all;
   if (holes > 0) {
-    log.Add(fmt::format("filled {} with {}", Count(holes, "hole", "holes"),
-                        Count(added, "face", "faces")));
+    log.Add(fmt::format("filled {} with {}",
+                        DescribeCount(holes, "hole", "holes"),
+                        DescribeCount(added, "face", "faces")));
   }
   log.Add("cut out and filled", cut, "face that crossed others",
           "faces that crossed others");
@@ -605,7 +328,7 @@ std::optional<SurfaceMesh> Unite(const std::vector<SurfaceMesh>& solids) {
 
 // Keeps the largest piece when all others are fragments, else changes nothing.
 // @returns whether one piece is left.
-bool DropFragments(SurfaceMesh& surface, Log& log) {
+bool DropFragments(SurfaceMesh& surface, RepairLog& log) {
   std::vector<SurfaceMesh> pieces = SplitShells(surface);
   if (pieces.size() == 1) return true;
   std::vector<double> volumes;
@@ -617,10 +340,10 @@ bool DropFragments(SurfaceMesh& surface, Log& log) {
       1.0 - *largest / std::accumulate(volumes.begin(), volumes.end(), 0.0);
   if (share > kMostFragmentVolume) return false;
   surface = pieces[static_cast<std::size_t>(largest - volumes.begin())];
-  log.Add(
-      fmt::format("dropped {} ({:.2g} % of the volume)",
-                  Count(pieces.size() - 1, "loose fragment", "loose fragments"),
-                  100.0 * share));
+  log.Add(fmt::format(
+      "dropped {} ({:.2g} % of the volume)",
+      DescribeCount(pieces.size() - 1, "loose fragment", "loose fragments"),
+      100.0 * share));
   return true;
 }
 
@@ -636,7 +359,8 @@ double CalcLostExtent(const SurfaceMesh& surface, const TriangleMesh& mesh) {
 }
 
 // One solid out of closed shells and sheets without wrapping, if that can be.
-std::optional<SurfaceMesh> Assemble(const MendedShells& mended, Log& log) {
+std::optional<SurfaceMesh> Assemble(const MendedShells& mended,
+                                    RepairLog& log) {
   if (mended.solids.empty() || mended.sheet_area > kMostSheetArea) {
     return std::nullopt;
   }
@@ -662,7 +386,7 @@ SurfaceMesh Shrink(const SurfaceMesh& wrap, double distance) {
   return pmp::does_self_intersect(shrunk) ? wrap : shrunk;
 }
 
-SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal, Log& log) {
+SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal, RepairLog& log) {
   SurfaceMesh wrap;
   const double alpha = kWrapAlpha * diagonal;
   const double offset = kWrapOffset * diagonal;
@@ -670,45 +394,27 @@ SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal, Log& log) {
   AppendTo(soup, surface);
   CGAL::alpha_wrap_3(soup.points, soup.faces, alpha, offset, wrap);
   log.Add(fmt::format("wrapped {}, closing gaps of up to {:.2g} mm",
-                      Count(soup.faces.size(), "face", "faces"), 1e3 * alpha));
+                      DescribeCount(soup.faces.size(), "face", "faces"),
+                      1e3 * alpha));
   return Shrink(wrap, kShrinking * offset);
 }
 
-Error MakeError(std::string message, std::string hint) {
+Error MakeError(std::string message,
+                std::string hint =
+                    "Check the mesh in a mesh editor; a closed"
+                    " surface is needed.") {
   return Error{ErrorCode::kUnusableInput, std::move(message), std::move(hint)};
-}
-
-constexpr char kCheckHint[] =
-    "Check the mesh in a mesh editor; a closed surface is needed.";
-
-std::optional<Error> FindHopelessness(const TriangleMesh& mesh) {
-  if (mesh.num_triangles() == 0) {
-    return MakeError("the mesh has no faces", kCheckHint);
-  }
-  for (const Eigen::Vector3d& p : mesh.vertices()) {
-    if (!p.allFinite()) {
-      return MakeError("the mesh has a coordinate that is not finite",
-                       kCheckHint);
-    }
-  }
-  const double diagonal = mesh.diagonal();
-  if (!(mesh.total_area() > kDegenerateHeight * diagonal * diagonal)) {
-    return MakeError("the mesh's faces have no area", kCheckHint);
-  }
-  if (CalcThickness(mesh.vertices()) < kPlanarThickness * diagonal) {
-    return MakeError("all points of the mesh lie in one plane", kCheckHint);
-  }
-  return std::nullopt;
 }
 
 struct Mended {
   SurfaceMesh solid;
-  Log log;
+  RepairLog log;
 };
 
 // Everything but wrapping; nothing when that makes no solid of it.
 // @param rest  Receives what is to be wrapped in that case.
-std::optional<Mended> Mend(Soup soup, double diagonal, Log log, Mended* rest) {
+std::optional<Mended> Mend(Soup soup, double diagonal, RepairLog log,
+                           Mended* rest) {
   Orient(soup, log);
   SurfaceMesh surface = ToSurfaceMesh(soup);
   log.Add("stitched", pmp::stitch_borders(surface), "pair of edges",
@@ -730,15 +436,14 @@ std::optional<Mended> Mend(Soup soup, double diagonal, Log log, Mended* rest) {
   return std::nullopt;
 }
 
-Result<RepairedMesh> Repair(const TriangleMesh& mesh, Log log) {
+Result<RepairedMesh> Repair(const TriangleMesh& mesh, RepairLog log) {
   const double diagonal = mesh.diagonal();
-  Soup soup = MakeCleanSoup(mesh, log);
+  const TriangleSoup soup = CleanSoup(mesh, log);
   if (soup.faces.empty()) {
-    return MakeError("the mesh's faces have no area", kCheckHint);
+    return MakeError("the mesh's faces have no area");
   }
-  SplitAtTJunctions(soup, kWeldDistance * diagonal, log);
   Mended rest;
-  auto mended = Mend(std::move(soup), diagonal, log, &rest);
+  auto mended = Mend(ToSoup(soup), diagonal, log, &rest);
   if (!mended ||
       CalcLostExtent(mended->solid, mesh) > kMostLostExtent * diagonal) {
     Mended wrapped{Wrap(rest.solid, diagonal, rest.log), rest.log};
@@ -754,7 +459,7 @@ Result<RepairedMesh> Repair(const TriangleMesh& mesh, Log log) {
   }
   if (!IsOneSolid(mended->solid) ||
       pmp::volume(mended->solid) < kSmallestVolume * std::pow(diagonal, 3)) {
-    return MakeError("the mesh encloses no volume", kCheckHint);
+    return MakeError("the mesh encloses no volume");
   }
   return RepairedMesh{ToTriangleMesh(mended->solid), mended->log.sentences()};
 }
@@ -775,16 +480,16 @@ void CollapseEdges(SurfaceMesh& surface, int max_triangles, const Cost& cost,
 }  // namespace
 
 Result<RepairedMesh> RepairMesh(const TriangleMesh& soup) {
-  Log log;
+  RepairLog log;
   const TriangleMesh mesh = DropUnusedVertices(soup, log);
-  if (auto error = FindHopelessness(mesh)) return *std::move(error);
+  if (auto why = FindHopelessness(mesh)) return MakeError(*why);
   try {
     if (IsSolid(mesh)) return RepairedMesh{mesh, log.sentences()};
     return Repair(mesh, std::move(log));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
-    return MakeError("no closed solid could be made of the mesh", kCheckHint);
+    return MakeError("no closed solid could be made of the mesh");
   }
 }
 
@@ -792,7 +497,7 @@ Result<TriangleMesh> Decimate(const TriangleMesh& mesh, int max_triangles) {
   GRASPDB_EXPECTS(max_triangles >= 4);
   if (mesh.num_triangles() <= max_triangles) return mesh;
   GRASPDB_EXPECTS(IsClosed(mesh));
-  SurfaceMesh surface = ToSurfaceMesh(ToSoup(mesh));
+  SurfaceMesh surface = ToSurfaceMesh(ToSoup(MakeSoup(mesh)));
   try {
     if (mesh.num_triangles() > kManyTriangles) {
       CollapseEdges(surface, std::max(max_triangles, kManyTriangles / 2),

@@ -148,8 +148,7 @@ class Transferrer {
         samples_E, RefineAlignment(samples_E, samples_N,
                                    CalcStart(part_E, options.scale), options)
                        .map_NE);
-    return mapping.warp ? WarpSamples(moved, samples_N, mapping.normal_weight)
-                        : moved;
+    return WarpSamples(moved, samples_N, mapping);
   }
 
   // The whole objects' alignment, which a body's handle has turned right; a

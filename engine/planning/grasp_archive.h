@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 
 namespace graspdb {

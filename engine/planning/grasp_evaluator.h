@@ -3,7 +3,7 @@
 #include "engine/geometry/solid.h"
 #include "engine/hand/finger_closing.h"
 #include "engine/hand/hand_shape.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 
 namespace graspdb {

@@ -7,7 +7,7 @@
 #include "engine/cspace/configuration_space.h"
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 
 namespace graspdb {

@@ -4,7 +4,7 @@
 
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
-#include "engine/parameters.h"
+#include "engine/parameters/grasp_parameters.h"
 #include "engine/quality/contact.h"
 
 namespace graspdb {

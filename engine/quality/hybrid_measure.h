@@ -5,7 +5,7 @@
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_model.h"
 #include "engine/math/rigid_transform.h"
-#include "engine/parameters.h"
+#include "engine/parameters/grasp_parameters.h"
 
 namespace graspdb {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "engine/geometry/triangle_mesh.h"
-#include "engine/parameters.h"
+#include "engine/parameters/grasp_parameters.h"
 #include "engine/quality/contact.h"
 
 namespace graspdb {

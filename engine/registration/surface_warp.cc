@@ -11,10 +11,6 @@
 namespace graspdb {
 namespace {
 
-constexpr int kSteps = 12;
-// The kernel's width at the first and at the last step, rms radii of N.
-constexpr double kFirstWidth = 0.6;
-constexpr double kLastWidth = 0.2;
 // Every so many-th sample carries a pull.
 constexpr int kPullStride = 4;
 
@@ -85,19 +81,22 @@ SurfaceSamples MapSamples(const SurfaceSamples& samples_E,
 
 SurfaceSamples WarpSamples(const SurfaceSamples& samples_E,
                            const SurfaceSamples& samples_N,
-                           double normal_weight) {
+                           const MappingParameters& parameters) {
   GRASPDB_EXPECTS(std::min(samples_E.size(), samples_N.size()) >= 4);
   const NormalizedSamples N(samples_N);
   NormalizedSamples E(samples_E, N.radius);
   const AffineMap to_N{Eigen::Matrix3d::Identity(),
                        (E.centre - N.centre) / N.radius};
   E.points.colwise() += to_N.translation;
-  for (int step = 0; step < kSteps; ++step) {
-    const double progress = static_cast<double>(step) / (kSteps - 1);
+  for (int step = 0; step < parameters.warp_steps; ++step) {
+    const double progress =
+        static_cast<double>(step) / std::max(1, parameters.warp_steps - 1);
     const double width =
-        kFirstWidth * std::pow(kLastWidth / kFirstWidth, progress);
-    const std::vector<Pull> pulls =
-        FindPulls(E.points, N, MatchSamples(E, N, {}, normal_weight));
+        parameters.warp_first_width *
+        std::pow(parameters.warp_last_width / parameters.warp_first_width,
+                 progress);
+    const std::vector<Pull> pulls = FindPulls(
+        E.points, N, MatchSamples(E, N, {}, parameters.normal_weight));
     for (int i = 0; i < E.points.cols(); ++i) {
       Bend(pulls, width, E.points.col(i), E.normals.col(i));
     }

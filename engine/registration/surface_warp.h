@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/geometry/surface_samples.h"
+#include "engine/parameters/transfer_parameters.h"
 #include "engine/registration/sample_matching.h"
 
 namespace graspdb {
@@ -15,10 +16,10 @@ SurfaceSamples MapSamples(const SurfaceSamples& samples_E,
  normals turn with the bending. Finds what no affine map can, such as a taper or
  a belly. Deterministic.
  @param samples_E  In frame N already; metres.
- @param normal_weight  Of normals beside positions in rms radii.
+ @param parameters  Its warp_steps, widths and normal_weight.
  @pre Both have at least 4 samples. */
 SurfaceSamples WarpSamples(const SurfaceSamples& samples_E,
                            const SurfaceSamples& samples_N,
-                           double normal_weight);
+                           const MappingParameters& parameters);
 
 }  // namespace graspdb

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/geometry/surface_samples.h"
-#include "engine/parameters.h"
+#include "engine/parameters/transfer_parameters.h"
 #include "engine/registration/sample_matching.h"
 #include "engine/segmentation/face_graph.h"
 #include "engine/segmentation/part.h"

@@ -7,7 +7,7 @@
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/math/rigid_transform.h"
-#include "engine/parameters.h"
+#include "engine/parameters/transfer_parameters.h"
 #include "engine/segmentation/part.h"
 #include "engine/segmentation/part_cutting.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/geometry/triangle_mesh.h"
-#include "engine/parameters.h"
+#include "engine/parameters/transfer_parameters.h"
 #include "engine/segmentation/face_graph.h"
 
 namespace graspdb {

@@ -8,7 +8,7 @@
 #include "engine/geometry/surface_index.h"
 #include "engine/geometry/surface_samples.h"
 #include "engine/math/kd_tree.h"
-#include "engine/parameters.h"
+#include "engine/parameters/transfer_parameters.h"
 
 namespace graspdb {
 

@@ -20,8 +20,6 @@ constexpr double kWithinLimits = 0.98;
 // Annealings that follow one another draw from nearer and from farther around,
 // shares of the trust region.
 constexpr double kReaches[] = {1.0, 0.5, 1.5};
-// How often a start is fitted again with the fingers as they closed there.
-constexpr int kRefits = 2;
 // How far the hand's frame reaches when the wrist is fitted, metres.
 constexpr double kFrameLength = 0.05;
 
@@ -109,7 +107,7 @@ class Replanner {
     for (const RigidTransform& X_NH : starts) {
       Sample sample{X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
       TransferTask closed = task_;
-      for (int refit = 0; refit <= kRefits; ++refit) {
+      for (int refit = 0; refit <= replan_.refits; ++refit) {
         if (replan_.aimed_starts) DrawBack(sample);
         ranked.push_back({sample, Evaluate(sample, &closed.q)});
         if (!replan_.aimed_starts) break;

@@ -6,7 +6,7 @@
 
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 #include "engine/transfer/transfer_outcome.h"
 

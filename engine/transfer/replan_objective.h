@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 
 namespace graspdb {
 

@@ -73,34 +73,6 @@ class FromJsonVisitor {
   JsonFields& fields_;
 };
 
-// One entry per field: what GET /v1/parameters tells.
-class DescribeVisitor {
- public:
-  template <class Section>
-  void operator()(const char* name, const Section& section) {
-    const std::string outer = path_;
-    path_ += std::string(name) + ".";
-    Section::Visit(section, *this);
-    path_ = outer;
-  }
-  template <class T>
-  void operator()(const char* name, const T& value, const ParameterInfo& info) {
-    Json entry;
-    entry["name"] = path_ + name;
-    entry["value"] = value;
-    entry["unit"] = info.unit;
-    entry["minimum"] = info.minimum;
-    entry["maximum"] = info.maximum;
-    entry["source"] = info.source;
-    entries_.push_back(std::move(entry));
-  }
-  const Json& entries() const { return entries_; }
-
- private:
-  std::string path_;
-  Json entries_ = Json::array();
-};
-
 Json MakeJson(const Parameters& parameters) {
   ToJsonVisitor visitor;
   Parameters::Visit(parameters, visitor);
@@ -153,11 +125,20 @@ std::string SegmentationToJson(const SegmentationParameters& parameters) {
 }
 
 std::string DescribeParameters() {
-  DescribeVisitor visitor;
   const Parameters defaults = MakeDefaultParameters();
-  Parameters::Visit(defaults, visitor);
   Json answer;
-  answer["items"] = visitor.entries();
+  answer["items"] = Json::array();
+  VisitFields(defaults, [&](const std::string& path, auto value,
+                            const ParameterInfo& info) {
+    Json entry;
+    entry["name"] = path;
+    entry["value"] = value;
+    entry["unit"] = info.unit;
+    entry["minimum"] = info.minimum;
+    entry["maximum"] = info.maximum;
+    entry["source"] = info.source;
+    answer["items"].push_back(std::move(entry));
+  });
   answer["presets"]["default"] = MakeJson(defaults);
   answer["presets"]["paper"] = MakeJson(MakePaperParameters());
   answer["next_cursor"] = nullptr;

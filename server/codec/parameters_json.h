@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 
 namespace graspdb {
 

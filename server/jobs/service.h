@@ -11,7 +11,7 @@
 
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"

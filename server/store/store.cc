@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/parameters.h"
+#include "engine/parameters/parameters.h"
 #include "server/ids.h"
 #include "server/store/blob_codec.h"
 #include "server/store/migrator.h"
@@ -32,8 +32,7 @@ void InsertParameterSet(Database& database, const std::string& hash,
 
 }  // namespace store
 
-using store::CheckPage;
-using store::MakePage;
+using store::ListByName;
 using store::Throw;
 using store::Unwrap;
 
@@ -258,18 +257,9 @@ Result<StoredCategory> Store::FindCategory(const std::string& name) const {
 Result<Page<StoredCategory>> Store::ListCategories(
     const PageRequest& page) const {
   return impl_->Read([&](Database& database) {
-    CheckPage(page);
-    std::vector<std::string> names;
-    Statement rows = database.Prepare(
-        "SELECT name FROM categories WHERE name > ? ORDER BY name LIMIT ?");
-    rows.Bind(page.cursor, page.limit + 1);
-    while (rows.Step()) names.push_back(rows.Text(0));
-    std::vector<StoredCategory> categories;
-    for (const std::string& name : names) {
-      categories.push_back(ReadCategory(database, name));
-    }
-    return MakePage(std::move(categories), page.limit,
-                    [](const StoredCategory& last) { return last.name; });
+    return ListByName(
+        database, "categories", page,
+        [&](const std::string& name) { return ReadCategory(database, name); });
   });
 }
 
@@ -362,18 +352,9 @@ Result<StoredHand> Store::FindHand(const std::string& name) const {
 
 Result<Page<StoredHand>> Store::ListHands(const PageRequest& page) const {
   return impl_->Read([&](Database& database) {
-    CheckPage(page);
-    std::vector<std::string> names;
-    Statement rows = database.Prepare(
-        "SELECT name FROM hands WHERE name > ? ORDER BY name LIMIT ?");
-    rows.Bind(page.cursor, page.limit + 1);
-    while (rows.Step()) names.push_back(rows.Text(0));
-    std::vector<StoredHand> hands;
-    for (const std::string& name : names) {
-      hands.push_back(ReadHand(database, name, false));
-    }
-    return MakePage(std::move(hands), page.limit,
-                    [](const StoredHand& last) { return last.name; });
+    return ListByName(database, "hands", page, [&](const std::string& name) {
+      return ReadHand(database, name, false);
+    });
   });
 }
 

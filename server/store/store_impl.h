@@ -87,12 +87,31 @@ Page<T> MakePage(std::vector<T> items, int limit, F&& cursor_of) {
   return page;
 }
 
+/** One page of the rows of a table whose key is `name`.
+ @param read  What has the name, as ReadCategory(). */
+template <class F>
+auto ListByName(Database& database, const std::string& table,
+                const PageRequest& page, F&& read) {
+  CheckPage(page);
+  std::vector<std::string> names;
+  Statement rows = database.Prepare("SELECT name FROM " + table +
+                                    " WHERE name > ? ORDER BY name LIMIT ?");
+  rows.Bind(page.cursor, page.limit + 1);
+  while (rows.Step()) names.push_back(rows.Text(0));
+  std::vector<decltype(read(table))> items;
+  for (const std::string& name : names) items.push_back(read(name));
+  return MakePage(std::move(items), page.limit,
+                  [](const auto& last) { return last.name; });
+}
+
 StoredObject ReadObject(Database& database, const std::string& id);
 std::vector<StoredPart> ReadParts(Database& database,
                                   const std::string& object_id);
 /** Adds a parameter set, once. */
 void InsertParameterSet(Database& database, const std::string& hash,
                         const std::string& json);
+/** Adds a grasp of a stored grasp space. */
+void InsertGrasp(Database& database, const StoredGrasp& grasp);
 
 // What `graspdb check` looks at; each adds to the report.
 void CheckObjects(Database& database, CheckReport& report);

@@ -116,7 +116,7 @@ class CheckerTest(unittest.TestCase):
         self.assertEqual(self.find_violations({
             "engine/math/a.h": "engine/base/b.h",
             "engine/math/b.h": "engine/math/a.h",
-            "engine/parameters.h": "engine/base/b.h",
+            "engine/parameters/parameters.h": "engine/base/b.h",
             "server/ids.h": "engine/math/a.h",
             "server/http/a.cc": "engine/base/b.h",
             "server/store/a.cc": "server/ids.h",

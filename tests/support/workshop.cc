@@ -131,8 +131,8 @@ TriangleMesh MakeSphere(double radius, int rings) {
   return Revolve(profile, 2 * rings);
 }
 
-TriangleMesh LoadObj(const std::string& path) {
-  std::istringstream text(ReadText(path));
+TriangleMesh ParseObj(const std::string& obj) {
+  std::istringstream text(obj);
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Eigen::Vector3i> triangles;
   std::string line;
@@ -155,6 +155,10 @@ TriangleMesh LoadObj(const std::string& path) {
     }
   }
   return TriangleMesh(std::move(vertices), std::move(triangles));
+}
+
+TriangleMesh LoadObj(const std::string& path) {
+  return ParseObj(ReadText(path));
 }
 
 LabelledMesh LoadMug(const std::string& name) {

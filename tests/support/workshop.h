@@ -21,7 +21,9 @@ TriangleMesh MakeCylinder(double radius, double height, int sides = 64,
 /** A sphere about the origin. */
 TriangleMesh MakeSphere(double radius, int rings = 32);
 
-/** Reads `v` and triangular `f` lines, nothing else. @pre The file exists. */
+/** Reads an OBJ's `v` and triangular `f` lines, nothing else. */
+TriangleMesh ParseObj(const std::string& text);
+/** The same of a file. @pre It exists. */
 TriangleMesh LoadObj(const std::string& path);
 
 /** A mesh of data/mug and its labels. */

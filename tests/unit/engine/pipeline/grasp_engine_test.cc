@@ -48,9 +48,15 @@ class GripperPipeline : public ::testing::Test {
   }
 
   TransferResult TransferBox(const GraspSpace& space, int threads) const {
+    return TransferFrom(box_E_, space, threads);
+  }
+
+  // @param whole_E  What box_E_ is a part of.
+  TransferResult TransferFrom(const TriangleMesh& whole_E,
+                              const GraspSpace& space, int threads) const {
     TransferRequest request;
     request.hand = gripper_;
-    request.example = Label(box_E_);
+    request.example = Label(whole_E);
     request.novel = Label(box_N_);
     request.example_parts = {MakePart(box_E_)};
     request.novel_parts = {MakePart(box_N_)};
@@ -108,6 +114,19 @@ TEST_F(GripperPipeline, OneAndTwoThreadsGiveTheSameBytes) {
   for (size_t i = 0; i < a.records.size(); ++i) {
     EXPECT_EQ(a.records[i].assembled, b.records[i].assembled);
     EXPECT_EQ(a.records[i].robust, b.records[i].robust);
+  }
+}
+
+TEST_F(GripperPipeline, TheExamplesQualityOnItsWholeIsZeroWhereItObstructs) {
+  const GraspSpace space = LearnBox(2);
+  for (const TransferRecord& record : TransferBox(space, 2).records) {
+    EXPECT_NEAR(record.example_epsilon_whole, record.example_epsilon, 1e-9);
+  }
+  // The gripper's way is inside this one, whose mass centre is the same.
+  const TriangleMesh block = workshop::MakeBox({0.3, 0.3, 0.3}, 4);
+  for (const TransferRecord& record : TransferFrom(block, space, 2).records) {
+    EXPECT_GT(record.example_epsilon, 0.0);
+    EXPECT_EQ(record.example_epsilon_whole, 0.0);
   }
 }
 

@@ -36,7 +36,7 @@ TEST(SurfaceWarp, BendsACylinderOntoATaperedOne) {
   const SurfaceSamples E =
       SamplePoissonDisk(workshop::MakeCylinder(0.03, 0.1), 800, 1);
   const SurfaceSamples N = SamplePoissonDisk(tapered, 800, 2);
-  const SurfaceSamples warped = WarpSamples(E, N, 0.3);
+  const SurfaceSamples warped = WarpSamples(E, N, {});
   EXPECT_LT(CalcMeanDistance(warped, index), 0.3 * CalcMeanDistance(E, index));
   // Side normals lean down by the taper, which is 0.3 · 30 mm on 50 mm.
   double lean = 0.0;
@@ -56,7 +56,7 @@ TEST(SurfaceWarp, LeavesWhatFitsNearlyWhereItIs) {
   const TriangleMesh box = workshop::MakeBox({0.04, 0.06, 0.1}, 8);
   const SurfaceSamples E = SamplePoissonDisk(box, 800, 1);
   const SurfaceSamples warped =
-      WarpSamples(E, SamplePoissonDisk(box, 800, 2), 0.3);
+      WarpSamples(E, SamplePoissonDisk(box, 800, 2), {});
   double moved = 0.0;
   for (int i = 0; i < E.size(); ++i) {
     moved += (warped.points[i] - E.points[i]).norm() / E.size();

@@ -1,11 +1,11 @@
 #include "server/codec/mesh_writer.h"
 
 #include <cstring>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/stored_records.h"
+#include "tests/support/workshop.h"
 
 namespace graspdb {
 namespace {
@@ -20,25 +20,7 @@ T At(const std::string& bytes, size_t offset) {
 
 TEST(MeshWriter, ObjReadsBackToTheSameMesh) {
   const TriangleMesh mesh = MakePlainBox({0.1, 1.0 / 3.0, 1e-7});
-  std::istringstream text(WriteMesh(mesh, MeshFormat::kObj));
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<Eigen::Vector3i> triangles;
-  std::string line;
-  while (std::getline(text, line)) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "v") {
-      Eigen::Vector3d v;
-      words >> v.x() >> v.y() >> v.z();
-      vertices.push_back(v);
-    } else if (kind == "f") {
-      Eigen::Vector3i t;
-      words >> t.x() >> t.y() >> t.z();
-      triangles.push_back(t - Eigen::Vector3i::Ones());
-    }
-  }
-  EXPECT_EQ(TriangleMesh(vertices, triangles), mesh);
+  EXPECT_EQ(workshop::ParseObj(WriteMesh(mesh, MeshFormat::kObj)), mesh);
 }
 
 TEST(MeshWriter, StlHasTheSizeAndCornersThatItsFormatSays) {

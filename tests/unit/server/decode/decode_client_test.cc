@@ -223,8 +223,8 @@ TEST(DecodeHelper, IsRefusedTenForbiddenSystemCalls) {
 }
 
 TEST(DecodeHelper, OpensNothingThatAMeshRefersTo) {
-  if (std::system("strace -V > /dev/null 2>&1 && strace true 2> /dev/null")) {
-    GTEST_SKIP() << "strace cannot run here";
+  if (std::system("strace true 2> /dev/null")) {
+    GTEST_SKIP() << "tracing is not permitted here";
   }
   ScratchFolder folder;
   DecodeRequest request;

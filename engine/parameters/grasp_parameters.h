@@ -1,0 +1,93 @@
+#pragma once
+
+#include "engine/parameters/parameter_info.h"
+
+namespace graspdb {
+
+/** What counts as a contact and as stable. */
+struct ContactParameters {
+  double friction{0.5};
+  int cone_edges{8};
+  double tolerance{0.0005};
+  double max_normal_angle{0.7853981633974483};
+  double patch_angle{0.5235987755982988};
+  double min_separation{0.006};
+  double stable_epsilon{1e-3};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("friction", self.friction,
+      ParameterInfo{"1", 0.01, 2.0, "ours: dry plastic or metal on rubber"});
+    f("cone_edges", self.cone_edges,
+      ParameterInfo{"1", 8, 64, "Ferrari and Canny 1992 leave it open"});
+    f("tolerance", self.tolerance,
+      ParameterInfo{"m", 1e-5, 0.005,
+                    "ours: hand and object this close touch"});
+    f("max_normal_angle", self.max_normal_angle,
+      ParameterInfo{"rad", 0.0, 1.58, "ours: opposed within 45 degrees"});
+    f("patch_angle", self.patch_angle,
+      ParameterInfo{"rad", 0.01, 3.15,
+                    "ours: one contact patch per 30 degrees"});
+    f("min_separation", self.min_separation,
+      ParameterInfo{"m", 1e-4, 0.1, "ours: contacts of one patch, apart"});
+    f("stable_epsilon", self.stable_epsilon,
+      ParameterInfo{"1", 0.0, 1.0, "ours: least eps that counts as stable"});
+  }
+  bool operator==(const ContactParameters&) const = default;
+};
+
+/** Eq. (1), the hybrid grasp measure. */
+struct HybridParameters {
+  double distance_weight{20.0};
+  double normal_weight{1.0};
+  double quality_weight{20.0};
+  double epsilon_floor{1e-3};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("distance_weight", self.distance_weight,
+      ParameterInfo{"1/m", 0, 1e6, "paper Sec. VI-B: omega_1 = 0.02 per mm"});
+    f("normal_weight", self.normal_weight,
+      ParameterInfo{"1", 0, 1e6, "paper Sec. VI-B: omega_2 = 1"});
+    f("quality_weight", self.quality_weight,
+      ParameterInfo{"1", 0, 1e6, "paper Sec. VI-B: omega_3 = 20"});
+    f("epsilon_floor", self.epsilon_floor,
+      ParameterInfo{"1", 1e-9, 1, "ours: caps lg(1/eps) of unstable grasps"});
+  }
+  bool operator==(const HybridParameters&) const = default;
+};
+
+/** When two grasps count as two. */
+struct DistinctParameters {
+  double position{0.010};
+  double angle{0.2617993877991494};
+  double joint{0.2617993877991494};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("position", self.position,
+      ParameterInfo{"m", 1e-4, 1, "ours: one unit of difference"});
+    f("angle", self.angle,
+      ParameterInfo{"rad", 1e-3, 3.2, "ours: one unit of difference"});
+    f("joint", self.joint,
+      ParameterInfo{"rad", 1e-3, 3.2, "ours: one unit of difference"});
+  }
+  bool operator==(const DistinctParameters&) const = default;
+};
+
+/** Pre-grasp: how far the fingers open and the hand retreats. */
+struct PregraspParameters {
+  double retreat{0.10};
+  double opening{0.35};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("retreat", self.retreat,
+      ParameterInfo{"m", 0, 1, "ours: free travel along the approach"});
+    f("opening", self.opening,
+      ParameterInfo{"1", 0.001, 10, "ours: rad or a share of a slide's range"});
+  }
+  bool operator==(const PregraspParameters&) const = default;
+};
+
+}  // namespace graspdb
