@@ -81,6 +81,8 @@ struct TransferRequest {
   LabelledMesh novel;               ///< Whole novel object, frame N.
   std::vector<Part> example_parts;  ///< Those of `example`.
   std::vector<Part> novel_parts;    ///< Those of `novel`.
+  /** What a point cloud shows of `novel`; null: it came as a mesh. */
+  std::shared_ptr<const SeenSurface> seen_N;
   RigidTransform X_NE;  ///< Whole-object alignment, from segmentation …
   double scale{1.0};    ///< … with its scale.
   /** For each novel part the grasp space of the example part of the same label;

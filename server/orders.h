@@ -20,8 +20,8 @@ inline constexpr char kDefaultHand[] = "barrett-bh8-280";
 struct ImportOrder {
   std::string bytes;
   std::string file_name;  ///< Helps to guess the format; may be empty.
-  std::string format;     ///< "obj", "stl", "ply"; empty: guess.
-  std::string units;      ///< "m", "mm", "cm", "in"; empty: metres.
+  std::string format;     ///< "obj", "glb", …; empty: guess.
+  std::string units;      ///< "m", "mm", "cm", "in"; empty: the file's.
   ObjectRole role{ObjectRole::kNovel};
   std::string category;  ///< Empty: none; "auto": the most similar one.
   std::string name;      ///< For people; may be empty.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/admission/cloud_report.h"
 #include "engine/base/result.h"
 #include "engine/grasp_engine.h"
 #include "engine/parameters/parameters.h"
@@ -75,6 +76,14 @@ struct StoredSegmentation {
   bool operator==(const StoredSegmentation&) const = default;
 };
 
+/** What a point cloud told of its object. */
+struct StoredCloud {
+  CloudReport report;
+  double seen_share{0.0};  ///< Of the surface that points support, 0..1.
+
+  bool operator==(const StoredCloud&) const = default;
+};
+
 struct StoredObject {
   std::string id;      ///< UUIDv7.
   std::string sha256;  ///< Of the original bytes, 64 hex digits.
@@ -82,8 +91,8 @@ struct StoredObject {
   std::string category;       ///< May be empty: of no category.
   std::string name;           ///< For people; may be empty.
   std::string file_name;      ///< As uploaded; may be empty.
-  std::string format;         ///< "obj", "stl" or "ply".
-  std::string units;          ///< "m", "mm", "cm" or "in".
+  std::string format;         ///< "obj", "glb", "pcd", ….
+  std::string units;          ///< "m", "mm", "cm", "in", or "file": its own.
   int64_t num_bytes{0};       ///< Of the original file.
   int num_triangles{0};       ///< Of the canonical mesh.
   int num_work_triangles{0};  ///< Of the mesh that grasps are searched on.
@@ -91,6 +100,7 @@ struct StoredObject {
   Eigen::Vector3d box_max{Eigen::Vector3d::Zero()};  ///< m.
   MassProperties mass;
   std::vector<std::string> repairs;
+  std::optional<StoredCloud> cloud;  ///< Unset: it came as a mesh.
   StoredSegmentation segmentation;
   std::string created_at;
 };
@@ -102,6 +112,7 @@ struct ObjectMeshes {
   std::vector<int> canonical_labels;
   TriangleMesh work;  ///< What grasps are searched on; often the same.
   std::vector<int> work_labels;
+  std::vector<Eigen::Vector3d> cloud;  ///< Points that they go by, if any.
 
   bool operator==(const ObjectMeshes&) const = default;
 };

@@ -15,10 +15,12 @@ constexpr double kFieldMargin = 0.01;
 
 }  // namespace
 
-Solid::Solid(TriangleMesh mesh_O, int num_surface_faces)
+Solid::Solid(TriangleMesh mesh_O, int num_surface_faces,
+             std::shared_ptr<const SeenSurface> seen)
     : mesh_O_(std::move(mesh_O)),
       num_surface_faces_(num_surface_faces < 0 ? mesh_O_.num_triangles()
                                                : num_surface_faces),
+      seen_(std::move(seen)),
       mass_(CalcMassProperties(mesh_O_)),
       index_(mesh_O_),
       field_(mesh_O_, index_, kFieldCells, kFieldMargin),

@@ -13,6 +13,7 @@ struct ContactParameters {
   double patch_angle{0.5235987755982988};
   double min_separation{0.006};
   double stable_epsilon{1e-3};
+  double unseen_force{0.5};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -32,6 +33,9 @@ struct ContactParameters {
       ParameterInfo{"m", 1e-4, 0.1, "ours: contacts of one patch, apart"});
     f("stable_epsilon", self.stable_epsilon,
       ParameterInfo{"1", 0.0, 1.0, "ours: least eps that counts as stable"});
+    f("unseen_force", self.unseen_force,
+      ParameterInfo{"1", 0.0, 1.0,
+                    "ours: of a contact where a cloud shows no surface"});
   }
   bool operator==(const ContactParameters&) const = default;
 };

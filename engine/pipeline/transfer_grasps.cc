@@ -96,7 +96,8 @@ class Transferrer {
         whole_E_ = std::make_unique<Solid>(request_.example.mesh_O);
       } else if (task == 1) {
         if (request_.assemble) {
-          whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O);
+          whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O, -1,
+                                             request_.seen_N);
         }
       } else if (const int p = task - 2; request_.grasp_spaces[p]) {
         PreparePart(p, result.alignments[p]);
@@ -113,8 +114,8 @@ class Transferrer {
     if (found == request_.example_parts.end()) return;
     pair.part_E = &*found;
     pair.index_E = std::make_unique<SurfaceIndex>(found->solid_O);
-    pair.solid_N =
-        std::make_unique<Solid>(part_N.solid_O, part_N.num_surface_faces);
+    pair.solid_N = std::make_unique<Solid>(
+        part_N.solid_O, part_N.num_surface_faces, request_.seen_N);
     const MappingParameters& mapping = parameters_.mapping;
     const SurfaceSamples samples_E =
         SamplePoissonDisk(found->solid_O, mapping.samples,

@@ -81,7 +81,8 @@ class LinkContacts {
     const Eigen::Vector3d nhat_O = !nearest->on_face && on_link->on_face
                                        ? Eigen::Vector3d(-nhat_link_O)
                                        : nearest->pseudonormal;
-    return Contact{link_index_, nearest->p_M, nhat_O, nearest->distance};
+    return Contact{link_index_, nearest->p_M, nhat_O, nearest->distance,
+                   solid_.is_seen(nearest->p_M)};
   }
 
   // The ends of the patch and its widest points on both sides of their line.

@@ -33,9 +33,10 @@ Wrenches CalcContactWrenches(const std::vector<Contact>& contacts,
   int column = 0;
   for (const Contact& contact : contacts) {
     const Eigen::Vector3d arm = (contact.p_O - mass.p_McCM) / mass.max_radius;
+    const double share = contact.seen ? 1.0 : parameters.unseen_force;
     for (const Eigen::Vector3d& f : CalcFrictionConeEdges(
              -contact.nhat_O, parameters.friction, parameters.cone_edges)) {
-      wrenches.col(column++) << f, arm.cross(f);
+      wrenches.col(column++) << share * f, arm.cross(share * f);
     }
   }
   return wrenches;

@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/geometry/mesh_format.h"
+#include "engine/admission/mesh_format.h"
+#include "engine/admission/text_scanner.h"
 #include "server/cli/backend.h"
 #include "server/codec/input_json.h"
 #include "server/codec/json.h"
@@ -46,10 +47,7 @@ std::string FormatOf(const ImportOrder& order) {
       GuessMeshFormat({reinterpret_cast<const uint8_t*>(order.bytes.data()),
                        order.bytes.size()},
                       order.file_name);
-  if (!guess) return "";
-  return *guess == MeshFormat::kObj   ? "obj"
-         : *guess == MeshFormat::kStl ? "stl"
-                                      : "ply";
+  return guess ? ToLower(GetName(*guess)) : "";
 }
 
 class RemoteBackend : public Backend {

@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/contract.h"
+#include "server/codec/json.h"
+
 namespace graspdb {
 namespace {
 
@@ -64,6 +67,58 @@ std::string WritePly(const TriangleMesh& mesh) {
   return bytes;
 }
 
+// One node, one primitive: a JSON chunk padded by spaces, then a binary chunk.
+std::string WriteGlb(const TriangleMesh& mesh) {
+  std::string binary;
+  for (const Eigen::Vector3d& vertex : mesh.vertices()) {
+    for (const double x : vertex) Append(binary, static_cast<float>(x));
+  }
+  const size_t positions = binary.size();
+  for (const Eigen::Vector3i& triangle : mesh.triangles()) {
+    for (const int index : triangle) {
+      Append(binary, static_cast<uint32_t>(index));
+    }
+  }
+  const Eigen::Vector3f low = mesh.box_min().cast<float>();
+  const Eigen::Vector3f high = mesh.box_max().cast<float>();
+  Json json;
+  json["asset"] = {{"version", "2.0"}, {"generator", "graspdb"}};
+  json["scene"] = 0;
+  json["scenes"] = {{{"nodes", {0}}}};
+  json["nodes"] = {{{"mesh", 0}}};
+  json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}};
+  json["accessors"] = {{{"bufferView", 0},
+                        {"componentType", 5126},  // FLOAT
+                        {"count", mesh.num_vertices()},
+                        {"type", "VEC3"},
+                        {"min", {low.x(), low.y(), low.z()}},
+                        {"max", {high.x(), high.y(), high.z()}}},
+                       {{"bufferView", 1},
+                        {"componentType", 5125},  // UNSIGNED_INT
+                        {"count", 3 * mesh.num_triangles()},
+                        {"type", "SCALAR"}}};
+  json["bufferViews"] = {
+      {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", positions}},
+      {{"buffer", 0},
+       {"byteOffset", positions},
+       {"byteLength", binary.size() - positions}}};
+  json["buffers"] = {{{"byteLength", binary.size()}}};
+  std::string text = DumpJson(json);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+
+  constexpr uint32_t kHeader = 12, kChunkHeader = 8;
+  std::string bytes = "glTF";
+  Append(bytes, uint32_t{2});
+  Append(bytes, static_cast<uint32_t>(kHeader + 2 * kChunkHeader + text.size() +
+                                      binary.size()));
+  Append(bytes, static_cast<uint32_t>(text.size()));
+  bytes += "JSON" + text;
+  Append(bytes, static_cast<uint32_t>(binary.size()));
+  bytes += std::string("BIN\0", 4) + binary;
+  return bytes;
+}
+
 }  // namespace
 
 std::string WriteMesh(const TriangleMesh& mesh, MeshFormat format) {
@@ -74,8 +129,12 @@ std::string WriteMesh(const TriangleMesh& mesh, MeshFormat format) {
       return WriteStl(mesh);
     case MeshFormat::kPly:
       return WritePly(mesh);
+    case MeshFormat::kGlb:
+      return WriteGlb(mesh);
+    default:
+      break;
   }
-  return {};
+  GRASPDB_EXPECTS(false);
 }
 
 }  // namespace graspdb

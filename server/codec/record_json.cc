@@ -91,6 +91,7 @@ Json EncodeContacts(const StoredGrasp& grasp, const HandModel& hand) {
     entry["n_O"] = Encode(contact.nhat_O);
     const bool mapped = i < grasp.targets_O.size() && grasp.targets_O[i];
     entry["mapped_p_O"] = mapped ? Encode(*grasp.targets_O[i]) : Json(nullptr);
+    entry["seen"] = contact.seen;
     json.push_back(std::move(entry));
   }
   return json;
@@ -168,6 +169,16 @@ Json Encode(const StoredObject& object) {
   json["mass_properties"]["centre"] = Encode(object.mass.p_McCM);
   json["mass_properties"]["max_radius"] = object.mass.max_radius;
   json["repairs"] = object.repairs;
+  json["cloud"] = nullptr;
+  if (object.cloud) {
+    const CloudReport& report = object.cloud->report;
+    json["cloud"] = {{"points", report.num_points},
+                     {"outliers", report.num_outliers},
+                     {"spacing", report.spacing},
+                     {"noise", report.noise},
+                     {"one_sided", report.one_sided},
+                     {"seen_share", object.cloud->seen_share}};
+  }
   json["segmentation"] = Encode(object.segmentation);
   json["created_at"] = object.created_at;
   return json;

@@ -230,8 +230,9 @@ Decoder::Decoder(DecoderOptions options) : options_(std::move(options)) {
 
 Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
                                     const DecodeRequest& request) const {
-  GRASPDB_EXPECTS(std::isfinite(request.metres_per_unit) &&
-                  request.metres_per_unit > 0.0);
+  GRASPDB_EXPECTS(!request.metres_per_unit ||
+                  (std::isfinite(*request.metres_per_unit) &&
+                   *request.metres_per_unit > 0.0));
   GRASPDB_EXPECTS(request.work_triangles >= 4);
   if (static_cast<int64_t>(bytes.size()) > request.limits.max_bytes) {
     return Error{ErrorCode::kTooLarge,
@@ -241,8 +242,9 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
   }
   GRASPDB_TRY(answer, RunHelper(options_, EncodeRequest(request), bytes));
   const MassProperties mass = CalcMassProperties(answer.mesh_O);
-  return DecodedMesh{std::move(answer.mesh_O), std::move(answer.work_O),
-                     std::move(answer.repairs), mass, std::move(answer.format)};
+  return DecodedMesh{std::move(answer.mesh_O),  std::move(answer.work_O),
+                     std::move(answer.repairs), mass,
+                     std::move(answer.format),  std::move(answer.cloud)};
 }
 
 Result<std::string> Decoder::Check() const {

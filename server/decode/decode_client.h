@@ -26,7 +26,8 @@ struct DecodedMesh {
   TriangleMesh work_O;               ///< Decimated for the search, or the same.
   std::vector<std::string> repairs;  ///< One sentence per step; often empty.
   MassProperties mass;               ///< Of mesh_O.
-  std::string format;                ///< "OBJ", "STL" or "PLY".
+  std::string format;                ///< "OBJ", "glTF", "PCD", ….
+  std::optional<DecodedCloud> cloud{};  ///< Unset for a mesh.
 };
 
 /** Admits mesh files without ever touching their bytes: a confined helper

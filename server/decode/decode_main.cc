@@ -2,6 +2,7 @@
 // inside a sandbox, writes one answer to standard output. The server starts one
 // per mesh; see decode_client.h.
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <new>
@@ -13,9 +14,12 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include "engine/geometry/graspable_size.h"
-#include "engine/geometry/mesh_reader.h"
-#include "engine/geometry/mesh_repair.h"
+#include "engine/admission/graspable_size.h"
+#include "engine/admission/mesh_reader.h"
+#include "engine/admission/mesh_repair.h"
+#include "engine/admission/point_cloud_reader.h"
+#include "engine/admission/surface_reconstruction.h"
+#include "engine/geometry/seen_surface.h"
 #include "server/decode/decode_protocol.h"
 #include "server/decode/sandbox.h"
 
@@ -47,6 +51,38 @@ bool WriteStandardOutput(std::span<const uint8_t> bytes) {
   return true;
 }
 
+double CalcSeenShare(const TriangleMesh& mesh, const SeenSurface& seen) {
+  double area = 0.0;
+  for (int f = 0; f < mesh.num_triangles(); ++f) {
+    if (seen.Shows(mesh.centroid(f))) area += mesh.area(f);
+  }
+  return std::min(1.0, area / mesh.total_area());
+}
+
+Result<DecodeAnswer> AdmitCloud(const DecodeRequest& request,
+                                std::span<const uint8_t> bytes,
+                                MeshFormat format) {
+  const double metres_per_unit = request.metres_per_unit.value_or(1.0);
+  GRASPDB_TRY(points_O,
+              ReadPointCloud(bytes, format, metres_per_unit, request.limits));
+  GRASPDB_TRY_VOID(
+      CheckGraspableSize(TriangleMesh(points_O, {}), metres_per_unit));
+  GRASPDB_TRY(surface, ReconstructSurface(points_O));
+  GRASPDB_TRY(repaired, RepairMesh(surface.mesh_O));
+  GRASPDB_TRY(work_O, Decimate(repaired.mesh, request.work_triangles));
+  DecodedCloud cloud{surface.report, 0.0, std::move(surface.points_O)};
+  cloud.seen_share = CalcSeenShare(
+      repaired.mesh, SeenSurface(cloud.points_O, CalcSeenReach(cloud.report)));
+  std::vector<std::string> steps = std::move(surface.steps);
+  steps.insert(steps.end(), repaired.repairs.begin(), repaired.repairs.end());
+  return DecodeAnswer{std::move(repaired.mesh),
+                      std::move(work_O),
+                      std::move(steps),
+                      GetName(format),
+                      "",
+                      std::move(cloud)};
+}
+
 Result<DecodeAnswer> Admit(const DecodeRequest& request,
                            std::span<const uint8_t> bytes) {
   MeshFormat format{};
@@ -56,13 +92,21 @@ Result<DecodeAnswer> Admit(const DecodeRequest& request,
     GRASPDB_TRY(guess, GuessMeshFormat(bytes, request.file_name));
     format = guess;
   }
+  if (HoldsPointsOnly(bytes, format)) {
+    return AdmitCloud(request, bytes, format);
+  }
   GRASPDB_TRY(soup_O,
               ReadMesh(bytes, format, request.metres_per_unit, request.limits));
-  GRASPDB_TRY_VOID(CheckGraspableSize(soup_O, request.metres_per_unit));
+  GRASPDB_TRY_VOID(
+      CheckGraspableSize(soup_O, request.metres_per_unit.value_or(1.0)));
   GRASPDB_TRY(repaired, RepairMesh(soup_O));
   GRASPDB_TRY(work_O, Decimate(repaired.mesh, request.work_triangles));
-  return DecodeAnswer{std::move(repaired.mesh), std::move(work_O),
-                      std::move(repaired.repairs), GetName(format), ""};
+  return DecodeAnswer{std::move(repaired.mesh),
+                      std::move(work_O),
+                      std::move(repaired.repairs),
+                      GetName(format),
+                      "",
+                      std::nullopt};
 }
 
 Result<DecodeAnswer> AnswerRequest(const std::string& confinement) try {

@@ -12,7 +12,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr uint32_t kRequestMark = 0x31524447;  // "GDR1"
-constexpr uint32_t kAnswerMark = 0x31414447;   // "GDA1"
+constexpr uint32_t kAnswerMark = 0x32414447;   // "GDA2"
 constexpr uint8_t kNoFormat = 255;
 
 class Writer {
@@ -27,11 +27,14 @@ class Writer {
     Write<uint64_t>(text.size());
     bytes_.insert(bytes_.end(), text.begin(), text.end());
   }
-  void WriteMesh(const TriangleMesh& mesh) {
-    Write<uint64_t>(mesh.vertices().size());
-    for (const Eigen::Vector3d& p : mesh.vertices()) {
+  void WritePoints(const std::vector<Eigen::Vector3d>& points) {
+    Write<uint64_t>(points.size());
+    for (const Eigen::Vector3d& p : points) {
       for (const double x : p) Write(x);
     }
+  }
+  void WriteMesh(const TriangleMesh& mesh) {
+    WritePoints(mesh.vertices());
     Write<uint64_t>(mesh.triangles().size());
     for (const Eigen::Vector3i& t : mesh.triangles()) {
       for (const int v : t) Write(v);
@@ -81,14 +84,38 @@ class Reader {
     return text;
   }
 
-  TriangleMesh ReadMesh() {
-    std::vector<Eigen::Vector3d> vertices(ReadCount(3 * sizeof(double)));
-    for (Eigen::Vector3d& p : vertices) {
-      for (double& x : p) {
-        x = Read<double>();
-        Require(std::isfinite(x));
-      }
+  double ReadFinite() {
+    const auto x = Read<double>();
+    Require(std::isfinite(x));
+    return x;
+  }
+
+  std::vector<Eigen::Vector3d> ReadPoints() {
+    std::vector<Eigen::Vector3d> points(ReadCount(3 * sizeof(double)));
+    for (Eigen::Vector3d& p : points) {
+      for (double& x : p) x = ReadFinite();
     }
+    return points;
+  }
+
+  DecodedCloud ReadCloud() {
+    DecodedCloud cloud;
+    cloud.report.num_points = Read<int>();
+    cloud.report.num_outliers = Read<int>();
+    cloud.report.spacing = ReadFinite();
+    cloud.report.noise = ReadFinite();
+    cloud.report.one_sided = Read<uint8_t>() == 1;
+    cloud.seen_share = ReadFinite();
+    cloud.points_O = ReadPoints();
+    Require(cloud.report.num_points >= 0 && cloud.report.num_outliers >= 0 &&
+            cloud.report.spacing > 0.0 && cloud.report.noise >= 0.0 &&
+            cloud.seen_share >= 0.0 && cloud.seen_share <= 1.0 &&
+            !cloud.points_O.empty());
+    return cloud;
+  }
+
+  TriangleMesh ReadMesh() {
+    std::vector<Eigen::Vector3d> vertices = ReadPoints();
     std::vector<Eigen::Vector3i> triangles(ReadCount(3 * sizeof(int)));
     for (Eigen::Vector3i& t : triangles) {
       for (int& v : t) {
@@ -121,7 +148,7 @@ std::vector<uint8_t> EncodeRequest(const DecodeRequest& request) {
   writer.Write(request.format ? static_cast<uint8_t>(*request.format)
                               : kNoFormat);
   writer.WriteText(request.file_name);
-  writer.Write(request.metres_per_unit);
+  writer.Write(request.metres_per_unit.value_or(0.0));
   writer.Write(request.limits.max_bytes);
   writer.Write(request.limits.max_triangles);
   writer.Write(request.work_triangles);
@@ -135,13 +162,14 @@ std::optional<DecodeRequest> ParseRequest(std::span<const uint8_t> bytes,
   reader.Require(reader.Read<uint32_t>() == kRequestMark);
   const auto format = reader.Read<uint8_t>();
   if (format != kNoFormat) {
-    reader.Require(format <= static_cast<uint8_t>(MeshFormat::kPly));
+    reader.Require(format <= static_cast<uint8_t>(MeshFormat::kXyz));
     request.format = static_cast<MeshFormat>(format);
   }
   request.file_name = reader.ReadText();
-  request.metres_per_unit = reader.Read<double>();
-  reader.Require(std::isfinite(request.metres_per_unit) &&
-                 request.metres_per_unit > 0.0);
+  if (const auto scale = reader.Read<double>(); scale != 0.0) {
+    reader.Require(std::isfinite(scale) && scale > 0.0);
+    request.metres_per_unit = scale;
+  }
   request.limits.max_bytes = reader.Read<int64_t>();
   request.limits.max_triangles = reader.Read<int64_t>();
   request.work_triangles = reader.Read<int>();
@@ -167,6 +195,17 @@ std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
   writer.Write<uint64_t>(answer->repairs.size());
   for (const std::string& repair : answer->repairs) writer.WriteText(repair);
   writer.WriteText(answer->format);
+  writer.Write<uint8_t>(answer->cloud.has_value());
+  if (answer->cloud) {
+    const CloudReport& report = answer->cloud->report;
+    writer.Write(report.num_points);
+    writer.Write(report.num_outliers);
+    writer.Write(report.spacing);
+    writer.Write(report.noise);
+    writer.Write<uint8_t>(report.one_sided);
+    writer.Write(answer->cloud->seen_share);
+    writer.WritePoints(answer->cloud->points_O);
+  }
   writer.WriteText(answer->confinement);
   return writer.TakeBytes();
 }
@@ -193,6 +232,7 @@ std::optional<Result<DecodeAnswer>> ParseAnswer(
   answer.repairs.resize(reader.ReadCount(sizeof(uint64_t)));
   for (std::string& repair : answer.repairs) repair = reader.ReadText();
   answer.format = reader.ReadText();
+  if (reader.Read<uint8_t>() == 1) answer.cloud = reader.ReadCloud();
   answer.confinement = reader.ReadText();
   if (!reader.ReadEverything()) return std::nullopt;
   return answer;

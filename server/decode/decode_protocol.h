@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/admission/cloud_report.h"
+#include "engine/admission/mesh_format.h"
 #include "engine/base/result.h"
-#include "engine/geometry/mesh_format.h"
 #include "engine/geometry/triangle_mesh.h"
 
 /** @file
@@ -21,10 +22,17 @@ namespace graspdb {
 struct DecodeRequest {
   std::optional<MeshFormat> format;  ///< Unset: by name, else by content.
   std::string file_name;             ///< May be empty.
-  double metres_per_unit{1.0};       ///< Positive.
+  std::optional<double> metres_per_unit{};  ///< Positive; unset: ReadMesh().
   MeshLimits limits;
   int work_triangles{
       5000};  ///< The working mesh is decimated to so many, >= 4.
+};
+
+/** What a point cloud told of its object. */
+struct DecodedCloud {
+  CloudReport report;
+  double seen_share{0.0};  ///< Of the surface that points support, 0..1.
+  std::vector<Eigen::Vector3d> points_O;  ///< Those that the mesh goes by, m.
 };
 
 /** What the helper made of it. */
@@ -32,8 +40,9 @@ struct DecodeAnswer {
   TriangleMesh mesh_O;  ///< Full resolution.
   TriangleMesh work_O;  ///< Working resolution.
   std::vector<std::string> repairs;
-  std::string format;       ///< "OBJ", "STL" or "PLY".
-  std::string confinement;  ///< How the helper was confined.
+  std::string format;                   ///< As GetName() has it.
+  std::string confinement;              ///< How the helper was confined.
+  std::optional<DecodedCloud> cloud{};  ///< Unset for a mesh.
 };
 
 /** The bytes that go before the mesh file's bytes. */

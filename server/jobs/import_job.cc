@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/geometry/mesh_format.h"
+#include "engine/admission/mesh_format.h"
 #include "server/codec/parameters_json.h"
 #include "server/decode/decode_client.h"
 #include "server/ids.h"
@@ -16,6 +16,8 @@ namespace {
 // Not the request's: what is stored must not depend on who asked first.
 constexpr uint64_t kImportSeed = 1;
 constexpr char kAuto[] = "auto";
+// Stored as the units of an object whose file names its own.
+constexpr char kFileUnits[] = "file";
 
 Result<DecodedMesh> DecodeMesh(const Decoder& decoder, const ImportOrder& order,
                                const ServiceOptions& options) {
@@ -24,14 +26,27 @@ Result<DecodedMesh> DecodeMesh(const Decoder& decoder, const ImportOrder& order,
     GRASPDB_TRY(format, ParseMeshFormat(order.format));
     request.format = format;
   }
-  GRASPDB_TRY(metres_per_unit, ParseUnits(order.units));
-  request.metres_per_unit = metres_per_unit;
+  if (order.units != kFileUnits) {
+    GRASPDB_TRY(metres_per_unit, ParseUnits(order.units));
+    request.metres_per_unit = metres_per_unit;
+  }
   request.file_name = order.file_name;
   request.limits.max_bytes = options.max_mesh_bytes;
   request.limits.max_triangles = options.max_triangles;
   return decoder.Decode({reinterpret_cast<const uint8_t*>(order.bytes.data()),
                          order.bytes.size()},
                         request);
+}
+
+bool HasOwnUnit(const ImportOrder& order) {
+  const auto format =
+      order.format.empty()
+          ? GuessMeshFormat(
+                {reinterpret_cast<const uint8_t*>(order.bytes.data()),
+                 order.bytes.size()},
+                order.file_name)
+          : ParseMeshFormat(order.format);
+  return format && *format == MeshFormat::kDae;
 }
 
 StoredObject DescribeObject(const ImportOrder& order,
@@ -52,6 +67,9 @@ StoredObject DescribeObject(const ImportOrder& order,
   object.box_max = decoded.mesh_O.box_max();
   object.mass = decoded.mass;
   object.repairs = decoded.repairs;
+  if (decoded.cloud) {
+    object.cloud = {decoded.cloud->report, decoded.cloud->seen_share};
+  }
   return object;
 }
 
@@ -101,8 +119,9 @@ Result<ImportResult> StoreSegmentation(Store& store, const StoredObject& object,
 
 Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
   ImportOrder checked = order;
-  if (checked.units.empty()) checked.units = "m";
-  if (const auto units = ParseUnits(checked.units); !units) {
+  if (checked.units.empty()) {
+    checked.units = HasOwnUnit(order) ? kFileUnits : "m";
+  } else if (const auto units = ParseUnits(checked.units); !units) {
     return units.error();
   }
   if (!order.format.empty()) {
@@ -111,8 +130,8 @@ Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
     }
   }
   if (order.bytes.empty()) {
-    return Error{ErrorCode::kUnusableInput, "The mesh is empty.",
-                 "send the bytes of an OBJ, STL or PLY file", "mesh"};
+    return Error{ErrorCode::kUnusableInput, "The mesh is empty.", kFormatHint,
+                 "mesh"};
   }
   if (std::ssize(order.bytes) > options_.max_mesh_bytes) {
     return Error{ErrorCode::kTooLarge,
@@ -158,6 +177,7 @@ Result<ImportResult> Service::ImportNewObject(const ImportOrder& order,
   object.bytes = order.bytes;
   object.meshes.canonical = std::move(decoded.mesh_O);
   object.meshes.work = std::move(decoded.work_O);
+  if (decoded.cloud) object.meshes.cloud = std::move(decoded.cloud->points_O);
   if (!order.category.empty()) {
     context.ReportProgress("segment", 0.3);
     GRASPDB_TRY(segmented,

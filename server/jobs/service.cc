@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/geometry/mesh_format.h"
+#include "engine/admission/mesh_format.h"
 #include "engine/hand/hand_reader.h"
 #include "server/codec/input_json.h"
 #include "server/decode/decode_client.h"

@@ -124,6 +124,11 @@ Result<Plan> MakePlan(const Store& store, const TransferOrder& order,
   Plan plan;
   plan.novel = novel;
   plan.warnings = novel.segmentation.warnings;
+  if (novel.cloud && novel.cloud->report.one_sided) {
+    plan.warnings.push_back(fmt::format(
+        "the cloud was seen from one side: {:.0f} % of the surface is made up",
+        100.0 * (1.0 - novel.cloud->seen_share)));
+  }
   GRASPDB_TRY(category, store.FindCategory(novel.category));
   if (novel.segmentation.verdict == ToString(SegmentationVerdict::kForeign)) {
     return Error{ErrorCode::kNotInCategory,
@@ -202,8 +207,7 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
   return row;
 }
 
-Result<LabelledMesh> LoadWorkMesh(const Store& store, const std::string& id) {
-  GRASPDB_TRY(meshes, store.ReadObjectMeshes(id));
+LabelledMesh TakeWorkMesh(ObjectMeshes& meshes) {
   return LabelledMesh{std::move(meshes.work), std::move(meshes.work_labels)};
 }
 
@@ -214,12 +218,16 @@ Result<TransferRequest> MakeRequest(const Store& store,
                                     int threads) {
   TransferRequest request;
   request.hand = std::move(hand);
-  GRASPDB_TRY(example, LoadWorkMesh(store, plan.alignment.example_id));
-  GRASPDB_TRY(novel, LoadWorkMesh(store, plan.novel.id));
+  GRASPDB_TRY(example, store.ReadObjectMeshes(plan.alignment.example_id));
+  GRASPDB_TRY(novel, store.ReadObjectMeshes(plan.novel.id));
   GRASPDB_TRY(example_parts, store.ReadSolids(plan.alignment.example_id));
   GRASPDB_TRY(novel_parts, store.ReadSolids(plan.novel.id));
-  request.example = std::move(example);
-  request.novel = std::move(novel);
+  request.example = TakeWorkMesh(example);
+  request.novel = TakeWorkMesh(novel);
+  if (plan.novel.cloud) {
+    request.seen_N = std::make_shared<const SeenSurface>(
+        novel.cloud, CalcSeenReach(plan.novel.cloud->report));
+  }
   request.example_parts = std::move(example_parts);
   request.novel_parts = std::move(novel_parts);
   request.X_NE = plan.alignment.X_NE;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/geometry/mesh_reader.h"
+#include "engine/admission/mesh_reader.h"
 #include "server/codec/input_json.h"
 #include "server/codec/mesh_writer.h"
 #include "server/codec/record_json.h"
@@ -103,6 +103,7 @@ HttpResponse MakeFileResponse(std::string bytes, const std::string& id,
   HttpResponse response;
   response.content_type = format == "obj"   ? "model/obj"
                           : format == "stl" ? "model/stl"
+                          : format == "glb" ? "model/gltf-binary"
                                             : "application/octet-stream";
   response.headers.emplace_back(
       "Content-Disposition",
@@ -121,15 +122,11 @@ Result<HttpResponse> GetMesh(const Service& service,
   GRASPDB_TRY_VOID(query.Finish());
   const Store& store = service.store();
   GRASPDB_TRY(object, store.FindObject(Id(request)));
-  if (format == "glb") {
-    return Error{ErrorCode::kNotImplemented, "glb is not written yet.",
-                 "format takes obj, stl, ply, original.", "format"};
-  }
   if (format == "original") {
     if (part) {
       return Error{ErrorCode::kInvalidArgument,
                    "The original file has no parts.",
-                   "With part, format takes obj, stl, ply.", "format"};
+                   "With part, format takes obj, stl, ply, glb.", "format"};
     }
     GRASPDB_TRY(bytes, store.ReadObjectBytes(object.id));
     return MakeFileResponse(std::move(bytes), object.id, object.format);

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/geometry/mesh_reader.h"
+#include "engine/admission/mesh_reader.h"
 #include "server/http/multipart.h"
 #include "server/ids.h"
 
@@ -108,7 +108,10 @@ Result<std::optional<ImportOrder>> ReadUpload(
     const HttpRequest& request, QueryReader& query,
     const std::vector<std::string>& others) {
   ImportOrder order;
-  order.format = query.Choice("format", {"obj", "stl", "ply"}).value_or("");
+  order.format = query
+                     .Choice("format", {"obj", "stl", "ply", "off", "glb",
+                                        "gltf", "dae", "pcd", "xyz"})
+                     .value_or("");
   order.units = query.Choice("units", {"m", "mm", "cm", "in"}).value_or("");
   std::string type;
   bool found = !request.body.empty();

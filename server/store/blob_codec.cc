@@ -20,6 +20,7 @@ enum class Kind : uint8_t {
   kPart = 4,
   kConfigurations = 5,
   kGrasp = 6,
+  kPoints = 7,
 };
 constexpr size_t kOverhead = 2 + 4;  // Version, kind; CRC-32.
 
@@ -165,6 +166,7 @@ class Reader {
     return configuration;
   }
   void Reject() { sound_ = false; }
+  bool AtEnd() const { return rest_.empty(); }
 
   template <class T>
   Result<T> Finish(T value) const {
@@ -225,6 +227,20 @@ Result<std::vector<int>> DecodeIndices(std::string_view bytes) {
   Reader reader(bytes, Kind::kIndices);
   std::vector<int> indices = reader.GetIndices();
   return reader.Finish(std::move(indices));
+}
+
+std::string EncodePoints(const std::vector<Eigen::Vector3d>& points) {
+  Writer writer(Kind::kPoints);
+  writer.PutSize(points.size());
+  for (const Eigen::Vector3d& point : points) writer.PutPoint(point);
+  return std::move(writer).Finish();
+}
+
+Result<std::vector<Eigen::Vector3d>> DecodePoints(std::string_view bytes) {
+  Reader reader(bytes, Kind::kPoints);
+  std::vector<Eigen::Vector3d> points(reader.GetSize(3 * sizeof(double)));
+  for (Eigen::Vector3d& point : points) point = reader.GetPoint();
+  return reader.Finish(std::move(points));
 }
 
 std::string EncodePose(const RigidTransform& X_AB) {
@@ -302,6 +318,11 @@ std::string EncodeGrasp(const GraspBlob& blob) {
     writer.PutInt(target.has_value() ? 1 : 0);
     if (target) writer.PutPoint(*target);
   }
+  std::vector<int> unseen;
+  for (size_t i = 0; i < grasp.contacts.size(); ++i) {
+    if (!grasp.contacts[i].seen) unseen.push_back(static_cast<int>(i));
+  }
+  if (!unseen.empty()) writer.PutIndices(unseen);
   return std::move(writer).Finish();
 }
 
@@ -324,6 +345,15 @@ Result<GraspBlob> DecodeGrasp(std::string_view bytes) {
   blob.targets_O.resize(reader.GetSize(sizeof(int32_t)));
   for (auto& target : blob.targets_O) {
     if (reader.GetInt() != 0) target = reader.GetPoint();
+  }
+  if (!reader.AtEnd()) {
+    for (const int i : reader.GetIndices()) {
+      if (i < 0 || i >= std::ssize(grasp.contacts)) {
+        reader.Reject();
+      } else {
+        grasp.contacts[static_cast<size_t>(i)].seen = false;
+      }
+    }
   }
   return reader.Finish(std::move(blob));
 }

@@ -27,6 +27,9 @@ Result<TriangleMesh> DecodeMesh(std::string_view bytes);
 std::string EncodeIndices(const std::vector<int>& indices);
 Result<std::vector<int>> DecodeIndices(std::string_view bytes);
 
+std::string EncodePoints(const std::vector<Eigen::Vector3d>& points);
+Result<std::vector<Eigen::Vector3d>> DecodePoints(std::string_view bytes);
+
 std::string EncodePose(const RigidTransform& X_AB);
 Result<RigidTransform> DecodePose(std::string_view bytes);
 

@@ -69,9 +69,34 @@ void WriteNotes(Database& database, const std::string& id,
   }
 }
 
+std::optional<StoredCloud> ReadCloud(Database& database,
+                                     const std::string& id) {
+  Statement row = database.Prepare(
+      "SELECT num_points, num_outliers, spacing, noise, one_sided, seen_share"
+      " FROM clouds WHERE object_id = ?");
+  if (!row.Bind(id).Step()) return std::nullopt;
+  StoredCloud cloud;
+  cloud.report = {static_cast<int>(row.Int(0)), static_cast<int>(row.Int(1)),
+                  row.Double(2), row.Double(3), row.Int(4) != 0};
+  cloud.seen_share = row.Double(5);
+  return cloud;
+}
+
+void InsertCloud(Database& database, const std::string& id,
+                 const StoredCloud& cloud,
+                 const std::vector<Eigen::Vector3d>& points) {
+  database.Prepare("INSERT INTO clouds VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+      .Bind(id, cloud.report.num_points, cloud.report.num_outliers,
+            cloud.report.spacing, cloud.report.noise, cloud.report.one_sided,
+            cloud.seen_share)
+      .BindBlob(EncodePoints(points))
+      .Run();
+}
+
 // What the object's own row does not hold.
 void ReadLists(Database& database, StoredObject& object) {
   object.repairs = ReadNotes(database, object.id, "repair");
+  object.cloud = ReadCloud(database, object.id);
   Statement row = database.Prepare(
       "SELECT method, verdict, example_id, pose, scale, residual, similarity"
       " FROM segmentations WHERE object_id = ?");
@@ -170,6 +195,9 @@ ObjectMeshes ReadMeshes(Database& database, const std::string& id) {
     meshes.work = Unwrap(DecodeMesh(row.Blob(1)));
     if (labelled) meshes.work_labels = Unwrap(DecodeIndices(row.Blob(3)));
   }
+  Statement cloud =
+      database.Prepare("SELECT points FROM clouds WHERE object_id = ?");
+  if (cloud.Bind(id).Step()) meshes.cloud = Unwrap(DecodePoints(cloud.Blob(0)));
   return meshes;
 }
 
@@ -353,6 +381,9 @@ Result<StoredObject> Store::InsertObject(const NewObject& object) {
     record.created_at = FormatNow();
     InsertObjectRow(database, record);
     InsertObjectData(database, record.id, object.bytes, object.meshes);
+    if (record.cloud) {
+      InsertCloud(database, record.id, *record.cloud, object.meshes.cloud);
+    }
     WriteNotes(database, record.id, "repair", record.repairs);
     WriteSegmentation(database, record.id, record.segmentation);
     InsertParts(database, record, object.parts, object.solids);

@@ -2,10 +2,12 @@
 
 import gzip
 import json
+import math
 import socket
 import threading
 import time
 
+import numpy
 import pytest
 
 import meshes
@@ -163,7 +165,7 @@ def test_units_scale_the_mesh(contract):
 
 
 @pytest.mark.parametrize("mesh_format,magic", [
-    ("obj", b"v "), ("stl", None), ("ply", b"ply\n")])
+    ("obj", b"v "), ("stl", None), ("ply", b"ply\n"), ("glb", b"glTF")])
 def test_a_mesh_comes_back_in_each_format(contract, world, mesh_format, magic):
     example = world["example"]
     content = contract.call("getMesh", 200, path={"id": example["id"]},
@@ -176,9 +178,37 @@ def test_a_mesh_comes_back_in_each_format(contract, world, mesh_format, magic):
     assert 0 < len(part) < len(content)
 
 
-def test_mesh_refuses_what_is_not_built_or_makes_no_sense(contract, world):
+def test_a_point_cloud_becomes_a_solid(contract):
+    rng = numpy.random.default_rng(1)
+    ball = rng.normal(size=(1500, 3))
+    ball *= 40 / numpy.linalg.norm(ball, axis=1)[:, None]
+    text = "".join("{:.3f} {:.3f} {:.3f}\n".format(*p) for p in ball)
+    stored = contract.call("postObject", 201, body=text.encode(),
+                           query={"format": "xyz", "units": "mm"})
+    assert stored["cloud"]["points"] == 1500
+    assert not stored["cloud"]["one_sided"]
+    assert stored["cloud"]["seen_share"] > 0.95
+    volume = stored["mass_properties"]["volume"]
+    assert volume == pytest.approx(4 / 3 * math.pi * 0.04**3, rel=0.1)
+    same = contract.call("getObject", 200, path={"id": stored["id"]})
+    assert same["cloud"] == stored["cloud"]
+    few = contract.call("postObject", 422, body=text[:3000].encode(),
+                        query={"format": "xyz", "units": "mm"})
+    assert "200" in few["detail"]
+
+
+def test_every_mesh_format_is_taken(contract, world):
     path = {"id": world["example"]["id"]}
-    contract.call("getMesh", 501, path=path, query={"format": "glb"})
+    for name in ("obj", "stl", "ply", "glb"):
+        content = contract.call("getMesh", 200, path=path,
+                                query={"format": name})
+        again = contract.call("postObject", (200, 201), body=content,
+                              query={"format": name})
+        assert again["triangles"] == world["example"]["triangles"]
+
+
+def test_mesh_refuses_what_makes_no_sense(contract, world):
+    path = {"id": world["example"]["id"]}
     contract.call("getMesh", 400, path=path,
                   query={"format": "original", "part": "body"})
     contract.call("getMesh", 400, path=path, query={"format": "fbx"})

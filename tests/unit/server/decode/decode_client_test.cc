@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/geometry/surface_sampling.h"
+#include "tests/support/cloud_files.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/workshop.h"
 
@@ -87,9 +89,25 @@ TEST(Decoder, AdmitsEveryEncoding) {
     EXPECT_TRUE(decoded->work_O == decoded->mesh_O);
     EXPECT_NEAR(decoded->mass.volume, 0.1 * 0.08 * 0.06, 1e-10);
     EXPECT_NEAR(decoded->mass.p_McCM.norm(), 0, 1e-8);
-    EXPECT_EQ(decoded->format, name.ends_with("obj")   ? "OBJ"
-                               : name.ends_with("stl") ? "STL"
-                                                       : "PLY");
+    EXPECT_EQ(decoded->format, GetName(*GuessMeshFormat(bytes, name)));
+    EXPECT_FALSE(decoded->cloud.has_value());
+  }
+}
+
+TEST(Decoder, MakesASolidOfEveryCloud) {
+  const auto points =
+      SamplePoissonDisk(workshop::MakeSphere(0.05, 40), 600, 1).points;
+  for (const auto& [name, bytes] : MakeEveryCloud(points)) {
+    SCOPED_TRACE(name);
+    const auto decoded = Decode(bytes, name);
+    ASSERT_TRUE(decoded.has_value()) << decoded.error().message;
+    EXPECT_NEAR(decoded->mass.max_radius, 0.05, 0.005);
+    ASSERT_TRUE(decoded->cloud.has_value());
+    EXPECT_EQ(decoded->cloud->report.num_points, 600);
+    EXPECT_FALSE(decoded->cloud->report.one_sided);
+    EXPECT_GT(decoded->cloud->seen_share, 0.99);
+    EXPECT_EQ(decoded->cloud->points_O.size(), 600u);
+    EXPECT_EQ(decoded->repairs.size(), 1u);
   }
 }
 

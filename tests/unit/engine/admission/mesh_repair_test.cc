@@ -1,4 +1,4 @@
-#include "engine/geometry/mesh_repair.h"
+#include "engine/admission/mesh_repair.h"
 
 #include <cmath>
 #include <cstdlib>

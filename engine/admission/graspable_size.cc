@@ -1,4 +1,4 @@
-#include "engine/geometry/graspable_size.h"
+#include "engine/admission/graspable_size.h"
 
 #include <fmt/core.h>
 

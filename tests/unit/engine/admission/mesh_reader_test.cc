@@ -1,8 +1,11 @@
-#include "engine/geometry/mesh_reader.h"
+#include "engine/admission/mesh_reader.h"
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -53,7 +56,7 @@ TEST(MeshReader, ReadsTheSameMeshFromEveryEncoding) {
         EXPECT_LT((mesh->corner(f, k) - cylinder.corner(f, k)).norm(), 1e-8);
       }
     }
-    if (*format != MeshFormat::kStl) {
+    if (*format != MeshFormat::kStl && !IsScene(*format)) {
       EXPECT_EQ(mesh->triangles(), cylinder.triangles());
     }
   }
@@ -265,8 +268,13 @@ TEST(MeshReader, RefusesEveryTruncationThatLeavesAnythingOut) {
     const MeshFormat format = *GuessMeshFormat(bytes, name);
     // The last line's end, and the name behind endsolid, are no loss; a number
     // cut short in ASCII PLY or OBJ is another number.
+    // A GLB's indices may be cut by what its buffer's alignment leaves.
     const bool text = name == "a.obj" || name == "ascii.ply";
-    const std::size_t spare = name == "ascii.stl" ? 6 : text ? 2 : 0;
+    const std::size_t spare = name == "ascii.stl" ? 6
+                              : name == "a.off"   ? 10
+                              : name == "a.dae"   ? 1
+                              : text              ? 2
+                                                  : 0;
     for (std::size_t size = 0; size + spare < bytes.size(); ++size) {
       const auto mesh =
           Read(FileBytes(bytes.begin(), bytes.begin() + size), format);
@@ -337,6 +345,92 @@ TEST(MeshReader, SpendsNoMemoryOnHeadersThatLie) {
   EXPECT_LT(GetPeakMemory() - before, int64_t{64} << 20);
 }
 
+TEST(SceneFiles, NodesPutTheirMeshesWhereTheirTransformsSay) {
+  // A quarter turn about z and a move for the parent, a mirror for the child,
+  // which is drawn a second time by a node of its own.
+  const FileBytes bytes =
+      MakeGlb(MakeTetrahedron(),
+              R"([{"rotation": [0, 0, 0.70710678118654752, 0.70710678118654752],
+           "translation": [1, 0, 0], "children": [1, 2]},
+          {"mesh": 0, "scale": [-1, 1, 1]}, {"mesh": 0}])");
+  const auto mesh = Read(bytes, MeshFormat::kGlb);
+  ASSERT_TRUE(mesh.has_value()) << mesh.error().message;
+  ASSERT_EQ(mesh->num_triangles(), 8);
+  // x of the tetrahedron becomes y, mirrored -y; y becomes -x, from x = 1.
+  EXPECT_LT((mesh->box_min() - Eigen::Vector3d(0.875, -0.125, 0)).norm(), 1e-6);
+  EXPECT_LT((mesh->box_max() - Eigen::Vector3d(1, 0.125, 0.125)).norm(), 1e-6);
+  // Both look outwards still.
+  EXPECT_NEAR(CalcMassProperties(*mesh).volume,
+              2 * CalcMassProperties(MakeTetrahedron()).volume, 1e-9);
+}
+
+TEST(SceneFiles, TheirOwnUnitHoldsUnlessAnotherIsStated) {
+  const TriangleMesh mesh = MakeTetrahedron();
+  for (const auto& [bytes, format, own] :
+       {std::tuple(MakeDae(mesh, 0.01), MeshFormat::kDae, 0.01),
+        std::tuple(MakeGlb(mesh), MeshFormat::kGlb, 1.0),
+        std::tuple(MakeObj(mesh), MeshFormat::kObj, 1.0)}) {
+    const auto by_itself = ReadMesh(bytes, format, std::nullopt, MeshLimits{});
+    ASSERT_TRUE(by_itself.has_value()) << by_itself.error().message;
+    EXPECT_NEAR(by_itself->box_max().x(), 0.125 * own, 1e-8);
+    const auto stated = ReadMesh(bytes, format, 0.001, MeshLimits{});
+    ASSERT_TRUE(stated.has_value());
+    EXPECT_NEAR(stated->box_max().x(), 0.125 * 0.001, 1e-9);
+  }
+}
+
+TEST(SceneFiles, NoAxisIsTurnedUp) {
+  const TriangleMesh box = workshop::MakeBox({0.125, 0.25, 0.5});
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
+    const auto mesh = Read(MakeDae(box, 1.0, up), MeshFormat::kDae);
+    ASSERT_TRUE(mesh.has_value());
+    EXPECT_LT((mesh->box_max() - box.box_max()).norm(), 1e-6) << up;
+  }
+}
+
+TEST(SceneFiles, AreTakenOnlyWhole) {
+  const TriangleMesh mesh = MakeTetrahedron();
+  for (const char* uri :
+       {R"("uri": "file:///etc/passwd", )", R"("uri": "http://a.example/b", )",
+        R"("uri": "buffer.bin", )"}) {
+    const auto outside =
+        Read(ToBytes(MakeGltfJson(mesh, uri, kOneNode)), MeshFormat::kGltf);
+    ASSERT_FALSE(outside.has_value()) << uri;
+    EXPECT_EQ(outside.error().code, ErrorCode::kUnusableInput);
+  }
+}
+
+TEST(SceneFiles, MayNotHoldMoreThanTheLimitByRepeatingAMesh) {
+  std::string nodes = R"([{"children": [)";
+  for (int i = 1; i <= 40; ++i)
+    nodes += fmt::format("{}{}", i > 1 ? "," : "", i);
+  nodes += "]}";
+  for (int i = 1; i <= 40; ++i) nodes += R"(,{"mesh": 0})";
+  MeshLimits limits;
+  limits.max_triangles = 100;
+  const auto mesh = ReadMesh(MakeGlb(MakeTetrahedron(), nodes + "]"),
+                             MeshFormat::kGlb, 1.0, limits);
+  ASSERT_FALSE(mesh.has_value());
+  EXPECT_EQ(mesh.error().code, ErrorCode::kTooLarge);
+}
+
+TEST(OffFiles, TakePolygonsPrefixesAndComments) {
+  const auto mesh = Read(ToBytes("# made by hand\nCOFF\n5 2 0 # counts\n"
+                                 "0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n"
+                                 "1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1\n"
+                                 "\n4 0 1 2 3 0.5 0.5 0.5\n3 0 1 4\n"),
+                         MeshFormat::kOff);
+  ASSERT_TRUE(mesh.has_value()) << mesh.error().message;
+  EXPECT_EQ(mesh->num_triangles(), 3);
+  for (const char* text :
+       {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+        "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "OFF\n3 1\n0 0 0\n",
+        "OFF\n-3 1 0\n", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n",
+        "4OFF\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n", "OFF\nx\n"}) {
+    EXPECT_FALSE(Read(ToBytes(text), MeshFormat::kOff).has_value()) << text;
+  }
+}
+
 TEST(MeshFormat, IsKnownByItsUsualNames) {
   for (const char* name : {"obj", ".OBJ", "model/obj"}) {
     EXPECT_EQ(*ParseMeshFormat(name), MeshFormat::kObj);
@@ -347,10 +441,15 @@ TEST(MeshFormat, IsKnownByItsUsualNames) {
   for (const char* name : {"ply", ".Ply", "model/ply"}) {
     EXPECT_EQ(*ParseMeshFormat(name), MeshFormat::kPly);
   }
-  const auto unknown = ParseMeshFormat("glb");
+  EXPECT_EQ(*ParseMeshFormat("model/gltf-binary"), MeshFormat::kGlb);
+  EXPECT_EQ(*ParseMeshFormat("gltf"), MeshFormat::kGltf);
+  for (const MeshFormat format : kMeshFormats) {
+    EXPECT_EQ(*ParseMeshFormat(GetName(format)), format);
+  }
+  const auto unknown = ParseMeshFormat("fbx");
   ASSERT_FALSE(unknown.has_value());
   EXPECT_EQ(unknown.error().code, ErrorCode::kInvalidArgument);
-  EXPECT_THAT(unknown.error().hint, HasSubstr("obj, stl and ply"));
+  EXPECT_THAT(unknown.error().hint, HasSubstr("obj, stl, ply, off, glb"));
 }
 
 TEST(MeshFormat, IsGuessedFromTheNameFirstAndTheContentElse) {
@@ -362,7 +461,7 @@ TEST(MeshFormat, IsGuessedFromTheNameFirstAndTheContentElse) {
     EXPECT_EQ(*GuessMeshFormat(bytes, "mesh.bin"), *by_content) << name;
   }
   for (const char* text :
-       {"", "\n\n", "# nothing else\n", "glTF", "o", "x 1"}) {
+       {"", "\n\n", "# nothing else\n", "o", "x 1", "1 2 x"}) {
     const auto guess = GuessMeshFormat(ToBytes(text), "");
     if (std::string(text) == "o") {
       EXPECT_TRUE(guess.has_value());

@@ -1,4 +1,4 @@
-#include "engine/geometry/soup_cleaning.h"
+#include "engine/admission/soup_cleaning.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -13,16 +13,42 @@
 
 namespace graspdb {
 
-/** The mesh formats that ReadMesh() understands. */
-enum class MeshFormat { kObj, kStl, kPly };
+/** What ReadMesh() and ReadPointCloud() understand. */
+enum class MeshFormat {
+  kObj,
+  kStl,
+  kPly,  ///< A mesh, or without faces a cloud.
+  kOff,
+  kGlb,
+  kGltf,
+  kDae,
+  kPcd,  ///< A cloud.
+  kXyz,  ///< A cloud.
+};
+
+/** Every format, in the order of the enumeration. */
+inline constexpr MeshFormat kMeshFormats[] = {
+    MeshFormat::kObj, MeshFormat::kStl, MeshFormat::kPly,
+    MeshFormat::kOff, MeshFormat::kGlb, MeshFormat::kGltf,
+    MeshFormat::kDae, MeshFormat::kPcd, MeshFormat::kXyz};
+
+/** Of nodes with transforms; may hold what is no surface. */
+constexpr bool IsScene(MeshFormat format) {
+  return format == MeshFormat::kGlb || format == MeshFormat::kGltf ||
+         format == MeshFormat::kDae;
+}
 
 struct MeshLimits {
   int64_t max_bytes{64 << 20};
   int64_t max_triangles{400'000};
+  int64_t max_points{1'000'000};
 };
 
-/** "OBJ", "STL" or "PLY". */
+/** "OBJ", "STL", "glTF" … */
 const char* GetName(MeshFormat format);
+
+/** What to do when a format is not known or not meant. */
+extern const char kFormatHint[];
 
 /** Names a format from its usual spellings ("obj", ".STL", "model/stl" …).
  @retval kInvalidArgument naming the formats known. */

@@ -1,4 +1,4 @@
-#include "engine/geometry/mesh_repair.h"
+#include "engine/admission/mesh_repair.h"
 
 #include <algorithm>
 #include <array>
@@ -33,8 +33,8 @@
 #include <CGAL/alpha_wrap_3.h>
 #include <fmt/core.h>
 
+#include "engine/admission/soup_cleaning.h"
 #include "engine/base/contract.h"
-#include "engine/geometry/soup_cleaning.h"
 
 namespace graspdb {
 namespace {
