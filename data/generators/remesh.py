@@ -79,7 +79,7 @@ class Surface:
         crossing = [(a, b) for a, b in self.all_edges() if height[a] * height[b] < 0]
         share = np.array([height[a] / (height[a] - height[b]) for a, b in crossing])[:, None]
         points = np.array(self.point)
-        a, b = np.array(crossing).T
+        a, b = np.array(crossing, int).reshape(-1, 2).T
         for edge, point in zip(crossing, self.project_to_seam(points[a] + share * (points[b] - points[a])).tolist()):
             self.split(*edge, tuple(point))
             height.append(0.0)
