@@ -89,6 +89,13 @@ def is_closed_manifold(faces):
     return len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
 
 
+def edges(faces, values):
+    """The edges (n, 2) of a closed mesh, and at each the values of its two faces (n, 2)."""
+    ends = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    order = np.lexsort(ends.T)
+    return ends[order[::2]], np.tile(values, 3)[order].reshape(-1, 2)
+
+
 def volume(vertices, faces):
     """Signed volume: positive when the faces look outwards."""
     a, b, c = vertices[faces.T]
