@@ -170,7 +170,7 @@ class CommandLine {
 
   static void AddMeshOptions(CLI::App* command, ImportOrder& order,
                              std::string& path) {
-    command->add_option("mesh", path, "OBJ, STL or PLY file; - reads stdin")
+    command->add_option("mesh", path, "a mesh or a point cloud; - reads stdin")
         ->required();
     command->add_option("--units", order.units, "m, mm, cm or in (default m)");
     command->add_option("--format", order.format, "obj, stl or ply");
