@@ -72,4 +72,11 @@ struct SegmentOrder {
   bool cascade{false};  ///< Grasps that depend on the old parts go.
 };
 
+/** Which stored objects a search by shape compares with. */
+struct ShapeQuery {
+  std::string category;            ///< Empty: any.
+  std::optional<ObjectRole> role;  ///< Unset: any.
+  int limit{10};                   ///< Most answers, 1..100.
+};
+
 }  // namespace graspdb

@@ -105,6 +105,15 @@ struct StoredObject {
   std::string created_at;
 };
 
+/** A stored object E beside the mesh N that it was searched by. */
+struct SimilarObject {
+  StoredObject object;
+  double similarity{0.0};  ///< 1 for a copy, 0 at twice the usual limit.
+  double residual{0.0};    ///< Of the alignment, squared rms radii.
+  double scale{1.0};       ///< E is scaled by this about its origin …
+  RigidTransform X_NE;     ///< … and lies so in frame N.
+};
+
 /** An object's meshes, both in frame O. Labels index the category's parts and
  are empty as long as the object is not segmented. */
 struct ObjectMeshes {
@@ -112,7 +121,8 @@ struct ObjectMeshes {
   std::vector<int> canonical_labels;
   TriangleMesh work;  ///< What grasps are searched on; often the same.
   std::vector<int> work_labels;
-  std::vector<Eigen::Vector3d> cloud;  ///< Points that they go by, if any.
+  std::vector<Eigen::Vector3d> cloud;  ///< Points that they go by, if any …
+  CloudReport cloud_report;            ///< … and what was found of them.
 
   bool operator==(const ObjectMeshes&) const = default;
 };

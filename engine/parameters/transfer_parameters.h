@@ -8,7 +8,7 @@ namespace graspdb {
 struct SegmentationParameters {
   bool by_shape_diameter{false};
   int samples{1500};
-  int coarse_samples{150};
+  int coarse_samples{250};
   double normal_weight{0.5};
   int refined_starts{8};
   double unary_sigma{0.12};

@@ -152,7 +152,8 @@ SampleMatches MatchSamples(const NormalizedSamples& samples_E,
   return matches;
 }
 
-double CalcResidual(const SampleMatches& matches) {
+double CalcResidual(const SampleMatches& matches, bool partial_N) {
+  if (partial_N) return CalcCappedMean(matches.squared_N);
   return 0.5 * (CalcCappedMean(matches.squared_E) +
                 CalcCappedMean(matches.squared_N));
 }

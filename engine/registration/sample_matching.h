@@ -56,8 +56,9 @@ SampleMatches MatchSamples(const NormalizedSamples& samples_E,
                            const AffineMap& map, double normal_weight);
 
 /** The mean of both directions' squared distances, each capped, so that parts
- without a counterpart count but do not dominate: squared rms radii of N. */
-double CalcResidual(const SampleMatches& matches);
+ without a counterpart count but do not dominate: squared rms radii of N.
+ @param partial_N  Only from N to E. */
+double CalcResidual(const SampleMatches& matches, bool partial_N = false);
 
 /** The weight of a match at this squared distance: 1 at zero, falling smoothly
  (Geman and McClure), so that what has no counterpart does not pull. */

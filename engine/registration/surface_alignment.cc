@@ -56,10 +56,10 @@ Eigen::Matrix3d ClampStretch(const Eigen::Matrix3d& linear) {
          solver.eigenvectors().transpose();
 }
 
-// Calls add(i, j, weight) for the matches of both directions.
+// Calls add(i, j, weight) for the matches of both directions, or of one.
 template <class F>
-void ForEachMatch(const SampleMatches& matches, F&& add) {
-  for (size_t i = 0; i < matches.N_of_E.size(); ++i) {
+void ForEachMatch(const SampleMatches& matches, bool partial_N, F&& add) {
+  for (size_t i = 0; !partial_N && i < matches.N_of_E.size(); ++i) {
     add(static_cast<int>(i), matches.N_of_E[i],
         CalcRobustWeight(matches.squared_E[i]));
   }
@@ -71,13 +71,14 @@ void ForEachMatch(const SampleMatches& matches, F&& add) {
 
 // The rotation and translation of least squares, positions and normals.
 AffineMap FitRigid(const NormalizedSamples& E, const NormalizedSamples& N,
-                   const SampleMatches& matches, double normal_weight) {
+                   const SampleMatches& matches, double normal_weight,
+                   bool partial_N) {
   double weight = 0.0;
   Eigen::Vector3d sum_E = Eigen::Vector3d::Zero();
   Eigen::Vector3d sum_N = Eigen::Vector3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d normal_products = Eigen::Matrix3d::Zero();
-  ForEachMatch(matches, [&](int i, int j, double w) {
+  ForEachMatch(matches, partial_N, [&](int i, int j, double w) {
     weight += w;
     sum_E += w * E.points.col(i);
     sum_N += w * N.points.col(j);
@@ -92,11 +93,12 @@ AffineMap FitRigid(const NormalizedSamples& E, const NormalizedSamples& N,
 
 // The affine map of least squares, positions only, near the previous one.
 AffineMap FitAffine(const NormalizedSamples& E, const NormalizedSamples& N,
-                    const SampleMatches& matches, const AffineMap& previous) {
+                    const SampleMatches& matches, const AffineMap& previous,
+                    bool partial_N) {
   // p_N ≈ [linear translation] (p_E, 1): normal equations of all three rows.
   Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
-  ForEachMatch(matches, [&](int i, int j, double w) {
+  ForEachMatch(matches, partial_N, [&](int i, int j, double w) {
     const Eigen::Vector4d p = E.points.col(i).homogeneous();
     gram += w * p * p.transpose();
     right += w * p * N.points.col(j).transpose();
@@ -197,7 +199,8 @@ class Aligner {
 
   Candidate Polish(const AffineMap& map, int steps) const {
     Candidate result = Iterate(E_, N_, map, steps);
-    result.residual = CalcResidual(Match(E_, N_, result.map));
+    result.residual =
+        CalcResidual(Match(E_, N_, result.map), options_.partial_N);
     return result;
   }
 
@@ -256,10 +259,11 @@ class Aligner {
     double residual = 0.0;
     for (int step = 0; step < steps; ++step) {
       const SampleMatches matches = Match(E, N, map);
-      residual = CalcResidual(matches);
+      residual = CalcResidual(matches, options_.partial_N);
       const AffineMap next =
-          options_.scale ? FitAffine(E, N, matches, map)
-                         : FitRigid(E, N, matches, options_.normal_weight);
+          options_.scale ? FitAffine(E, N, matches, map, options_.partial_N)
+                         : FitRigid(E, N, matches, options_.normal_weight,
+                                    options_.partial_N);
       const double change = (next.linear - map.linear).norm() +
                             (next.translation - map.translation).norm();
       map = next;

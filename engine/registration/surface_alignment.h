@@ -38,6 +38,9 @@ struct AlignmentOptions {
   double normal_weight{0.5};  ///< Of normals beside positions in rms radii.
   int coarse_samples{150};    ///< Used to judge the starts.
   int refined_starts{8};      ///< Best different starts that are refined.
+  /** N shows a part of its surface only: of the matches, those from E to N
+   count for nothing. */
+  bool partial_N{false};
   /** Rotations R_NE to start from; when empty, the 24 proper matches of the
    principal axes, each also turned by ±40° about each axis. */
   std::vector<Eigen::Matrix3d> start_rotations{};

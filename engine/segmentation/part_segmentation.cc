@@ -24,12 +24,27 @@ struct Match {
   SurfaceAlignment alignment;
 };
 
+// Those that a cloud shows; all when it shows next to nothing.
+SurfaceSamples KeepSeen(const SurfaceSamples& samples,
+                        const SeenSurface& seen) {
+  SurfaceSamples kept;
+  for (int i = 0; i < samples.size(); ++i) {
+    if (!seen.Shows(samples.points[i])) continue;
+    kept.points.push_back(samples.points[i]);
+    kept.normals.push_back(samples.normals[i]);
+    kept.faces.push_back(samples.faces[i]);
+  }
+  constexpr int kFewest = 50;
+  return kept.size() < kFewest ? samples : kept;
+}
+
 std::optional<Match> FindBestExample(const SurfaceSamples& samples_N,
                                      const std::vector<LabelledMesh>& examples,
                                      const SegmentationParameters& parameters,
-                                     uint64_t seed,
+                                     uint64_t seed, bool partial_N,
                                      const ExecutionContext& context) {
   AlignmentOptions options;
+  options.partial_N = partial_N;
   options.normal_weight = parameters.normal_weight;
   options.coarse_samples = parameters.coarse_samples;
   options.refined_starts = parameters.refined_starts;
@@ -121,15 +136,19 @@ class Judge {
                     parameters_.max_residual));
   }
 
-  void CheckShares(const PartStatistics& novel, const PartStatistics& example) {
+  // @param partial  Areas tell nothing, and a part may be out of sight.
+  void CheckShares(const PartStatistics& novel, const PartStatistics& example,
+                   bool partial) {
     for (size_t label = 0; label < novel.shares.size(); ++label) {
       if (example.shares[label] == 0.0) continue;
       const double ratio = novel.shares[label] / example.shares[label];
       const std::string part = "the " + vocabulary_.labels[label];
       if (ratio == 0.0) {
-        Fail(SegmentationVerdict::kForeign, part + " was not found");
-      } else if (ratio < parameters_.min_area_ratio ||
-                 ratio > parameters_.max_area_ratio) {
+        Fail(partial ? SegmentationVerdict::kUnsure
+                     : SegmentationVerdict::kForeign,
+             part + " was not found");
+      } else if (!partial && (ratio < parameters_.min_area_ratio ||
+                              ratio > parameters_.max_area_ratio)) {
         const bool is_narrow = ratio > 0.5 * parameters_.min_area_ratio &&
                                ratio < 2.0 * parameters_.max_area_ratio;
         Fail(is_narrow ? SegmentationVerdict::kUnsure
@@ -211,13 +230,13 @@ Result<SegmentationResult> SegmentObject(
     const TriangleMesh& mesh_N, const PartVocabulary& vocabulary,
     const std::vector<LabelledMesh>& examples,
     const SegmentationParameters& parameters, uint64_t seed,
-    ExecutionContext& context) {
+    ExecutionContext& context, const SeenSurface* seen_N) {
   const int num_labels = static_cast<int>(vocabulary.labels.size());
   GRASPDB_EXPECTS(!examples.empty() && num_labels > 0);
-  const SurfaceSamples samples_N =
-      SampleSurface(mesh_N, parameters.samples, seed);
-  const auto match =
-      FindBestExample(samples_N, examples, parameters, seed, context);
+  SurfaceSamples samples_N = SampleSurface(mesh_N, parameters.samples, seed);
+  if (seen_N != nullptr) samples_N = KeepSeen(samples_N, *seen_N);
+  const auto match = FindBestExample(samples_N, examples, parameters, seed,
+                                     seen_N != nullptr, context);
   if (!match) return Error{ErrorCode::kCancelled, "segmentation was cancelled"};
   const LabelledMesh& example = examples[match->example];
 
@@ -252,7 +271,7 @@ Result<SegmentationResult> SegmentObject(
   const PartStatistics known =
       CalcStatistics(example.mesh_O, example.face_labels,
                      CalcFaceLinks(example.mesh_O), num_labels);
-  judge.CheckShares(novel, known);
+  judge.CheckShares(novel, known, seen_N != nullptr);
   judge.CheckTopology(novel, known);
 
   auto parts = CutIntoParts({mesh_N, result.face_labels}, vocabulary);

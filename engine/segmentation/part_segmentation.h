@@ -6,6 +6,7 @@
 
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
+#include "engine/geometry/seen_surface.h"
 #include "engine/math/rigid_transform.h"
 #include "engine/parameters/transfer_parameters.h"
 #include "engine/segmentation/part.h"
@@ -39,6 +40,8 @@ struct SegmentationResult {
  into capped, closed parts (or, with parameters.by_shape_diameter, cuts by shape
  diameter and gives each segment the example's label that lies there).
  Deterministic for a seed; independent of the object's pose and unit.
+ @param seen_N  Not null when a point cloud shows one side of the object only:
+   the example is laid over what it shows, and areas tell nothing.
  @pre examples is not empty, each has one label per face, an index into the
    vocabulary; mesh_N is closed.
  @retval kCancelled when the context says so.
@@ -47,6 +50,6 @@ Result<SegmentationResult> SegmentObject(
     const TriangleMesh& mesh_N, const PartVocabulary& vocabulary,
     const std::vector<LabelledMesh>& examples,
     const SegmentationParameters& parameters, uint64_t seed,
-    ExecutionContext& context);
+    ExecutionContext& context, const SeenSurface* seen_N = nullptr);
 
 }  // namespace graspdb

@@ -348,6 +348,16 @@ std::string ToJson(const StoredObject& object,
   return DumpJson(json);
 }
 
+std::string ToJson(const SimilarObject& similar) {
+  Json json;
+  json["object"] = Encode(similar.object);
+  json["similarity"] = similar.similarity;
+  json["alignment"]["X_NE"] = Encode(similar.X_NE);
+  json["alignment"]["scale"] = similar.scale;
+  json["alignment"]["residual"] = similar.residual;
+  return DumpJson(json);
+}
+
 std::string ToJson(const StoredPart& part) {
   return DumpJson(Encode(part, true));
 }

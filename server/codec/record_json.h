@@ -26,6 +26,7 @@ std::string ToJson(const StoredObject& object);
 /** With its parts (without their faces): for one object. */
 std::string ToJson(const StoredObject& object,
                    const std::vector<StoredPart>& parts);
+std::string ToJson(const SimilarObject& similar);
 std::string ToJson(const StoredPart& part);
 std::string ToJson(const StoredHand& hand, const HandModel& model);
 std::string ToJson(const StoredGraspSpace& space);

@@ -19,25 +19,6 @@ constexpr char kAuto[] = "auto";
 // Stored as the units of an object whose file names its own.
 constexpr char kFileUnits[] = "file";
 
-Result<DecodedMesh> DecodeMesh(const Decoder& decoder, const ImportOrder& order,
-                               const ServiceOptions& options) {
-  DecodeRequest request;
-  if (!order.format.empty()) {
-    GRASPDB_TRY(format, ParseMeshFormat(order.format));
-    request.format = format;
-  }
-  if (order.units != kFileUnits) {
-    GRASPDB_TRY(metres_per_unit, ParseUnits(order.units));
-    request.metres_per_unit = metres_per_unit;
-  }
-  request.file_name = order.file_name;
-  request.limits.max_bytes = options.max_mesh_bytes;
-  request.limits.max_triangles = options.max_triangles;
-  return decoder.Decode({reinterpret_cast<const uint8_t*>(order.bytes.data()),
-                         order.bytes.size()},
-                        request);
-}
-
 bool HasOwnUnit(const ImportOrder& order) {
   const auto format =
       order.format.empty()
@@ -117,6 +98,24 @@ Result<ImportResult> StoreSegmentation(Store& store, const StoredObject& object,
 
 }  // namespace
 
+Result<DecodedMesh> Service::DecodeUpload(const ImportOrder& order) const {
+  DecodeRequest request;
+  if (!order.format.empty()) {
+    GRASPDB_TRY(format, ParseMeshFormat(order.format));
+    request.format = format;
+  }
+  if (order.units != kFileUnits) {
+    GRASPDB_TRY(metres_per_unit, ParseUnits(order.units));
+    request.metres_per_unit = metres_per_unit;
+  }
+  request.file_name = order.file_name;
+  request.limits.max_bytes = options_.max_mesh_bytes;
+  request.limits.max_triangles = options_.max_triangles;
+  return decoder_->Decode({reinterpret_cast<const uint8_t*>(order.bytes.data()),
+                           order.bytes.size()},
+                          request);
+}
+
 Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
   ImportOrder checked = order;
   if (checked.units.empty()) {
@@ -171,13 +170,16 @@ Result<ImportResult> Service::ImportObject(const ImportOrder& order,
 Result<ImportResult> Service::ImportNewObject(const ImportOrder& order,
                                               ExecutionContext& context) {
   context.ReportProgress("decode", 0.0);
-  GRASPDB_TRY(decoded, DecodeMesh(*decoder_, order, options_));
+  GRASPDB_TRY(decoded, DecodeUpload(order));
   NewObject object;
   object.record = DescribeObject(order, decoded);
   object.bytes = order.bytes;
   object.meshes.canonical = std::move(decoded.mesh_O);
   object.meshes.work = std::move(decoded.work_O);
-  if (decoded.cloud) object.meshes.cloud = std::move(decoded.cloud->points_O);
+  if (decoded.cloud) {
+    object.meshes.cloud = std::move(decoded.cloud->points_O);
+    object.meshes.cloud_report = decoded.cloud->report;
+  }
   if (!order.category.empty()) {
     context.ReportProgress("segment", 0.3);
     GRASPDB_TRY(segmented,

@@ -195,9 +195,13 @@ Result<SegmentedObject> SegmentByExamples(
             "populate data",
         "category"};
   }
-  GRASPDB_TRY(result,
-              SegmentObject(meshes.work, MakeVocabulary(category),
-                            examples.meshes, parameters, seed, context));
+  std::optional<SeenSurface> seen;
+  if (!meshes.cloud.empty() && meshes.cloud_report.one_sided) {
+    seen.emplace(meshes.cloud, CalcSeenReach(meshes.cloud_report));
+  }
+  GRASPDB_TRY(result, SegmentObject(meshes.work, MakeVocabulary(category),
+                                    examples.meshes, parameters, seed, context,
+                                    seen ? &*seen : nullptr));
   return MakeSegmentedObject(category, meshes, examples, parameters,
                              std::move(result));
 }

@@ -12,6 +12,7 @@
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/parameters/parameters.h"
+#include "engine/registration/shape_descriptor.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -20,6 +21,7 @@ namespace graspdb {
 
 class Decoder;
 class JobRunner;
+struct DecodedMesh;
 
 /** GET /v1/grasps: a GraspQuery and what only the category knows. */
 struct GraspSearch {
@@ -88,6 +90,11 @@ class Service {
   /** Segments a stored object again, or takes the given labels. */
   Result<ImportResult> Resegment(const SegmentOrder& order,
                                  ExecutionContext& context);
+  /** The stored objects whose shapes are the most like a mesh's, which is not
+   stored: the nearest by shape descriptor, sorted by how well they align. */
+  Result<std::vector<SimilarObject>> SearchByShape(const ImportOrder& order,
+                                                   const ShapeQuery& query,
+                                                   ExecutionContext& context);
   /** PATCH of a part: its faces get another label of the category. Parts of the
    same label become one. */
   Result<ImportResult> Relabel(const std::string& part_id,
@@ -143,6 +150,8 @@ class Service {
  private:
   friend class JobRunner;
 
+  Result<DecodedMesh> DecodeUpload(const ImportOrder& order) const;
+  Result<ShapeDescriptor> FindDescriptor(const std::string& id) const;
   // With the defaults filled in.
   Result<ImportOrder> CheckImport(const ImportOrder& order) const;
   Result<TransferOrder> CheckTransfer(const TransferOrder& order) const;
@@ -157,6 +166,8 @@ class Service {
   ServiceOptions options_;
   mutable std::mutex hands_mutex_;
   mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;
+  mutable std::mutex descriptors_mutex_;
+  mutable std::map<std::string, ShapeDescriptor> descriptors_;  // By object.
   std::unique_ptr<JobRunner> runner_;
 };
 

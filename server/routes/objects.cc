@@ -66,6 +66,34 @@ Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
   });
 }
 
+Result<HttpResponse> SearchByShape(Service& service,
+                                   const HttpRequest& request) {
+  QueryReader query(request.query);
+  auto upload = ReadUpload(request, query, {});
+  ShapeQuery shape;
+  shape.category = query.Text("category").value_or("");
+  if (const auto role = query.Choice("role", {"example", "novel"})) {
+    shape.role = *role == "example" ? ObjectRole::kExample : ObjectRole::kNovel;
+  }
+  shape.limit =
+      static_cast<int>(query.Integer("limit", 1, 100).value_or(shape.limit));
+  GRASPDB_TRY_VOID(query.Finish());
+  if (!upload) return upload.error();
+  if (!upload->has_value()) return MakeMissingMesh();
+  if (!shape.category.empty()) {
+    const auto category = service.store().FindCategory(shape.category);
+    if (!category) return category.error();
+  }
+  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+    RequestContext context(request);
+    GRASPDB_TRY(found,
+                service.SearchByShape(**upload, shape, context.context()));
+    std::vector<std::string> items;
+    for (const SimilarObject& similar : found) items.push_back(ToJson(similar));
+    return MakeJsonResponse(200, ListToJson(items, ""));
+  });
+}
+
 Result<HttpResponse> GetObject(const Service& service,
                                const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
@@ -191,6 +219,10 @@ Result<HttpResponse> PostGraspSpaces(Service& service,
 
 void AddObjectRoutes(Router& router, Service& service) {
   const std::string one = "/v1/objects/{id}";
+  router.Add({"POST", "/v1/search", BodyKind::kUpload,
+              [&service](const HttpRequest& request) {
+                return SearchByShape(service, request);
+              }});
   router.Add({"GET", "/v1/objects", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return ListObjects(service, request);

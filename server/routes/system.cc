@@ -58,8 +58,6 @@ void AddSystemRoutes(Router& router, Service& service) {
               }});
   router.Add({"GET", "/openapi.json", BodyKind::kNone, GetOpenApi});
   router.Add({"GET", "/v1/parameters", BodyKind::kNone, GetParameters});
-  router.Add(
-      {"POST", "/v1/search", BodyKind::kUpload, Announce("Search by shape")});
   router.Add({"GET", "/v1/backups", BodyKind::kNone, Announce("A backup")});
   router.Add({"POST", "/v1/backups", BodyKind::kJson, Announce("A backup")});
 }

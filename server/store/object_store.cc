@@ -195,9 +195,13 @@ ObjectMeshes ReadMeshes(Database& database, const std::string& id) {
     meshes.work = Unwrap(DecodeMesh(row.Blob(1)));
     if (labelled) meshes.work_labels = Unwrap(DecodeIndices(row.Blob(3)));
   }
-  Statement cloud =
-      database.Prepare("SELECT points FROM clouds WHERE object_id = ?");
-  if (cloud.Bind(id).Step()) meshes.cloud = Unwrap(DecodePoints(cloud.Blob(0)));
+  if (const auto cloud = ReadCloud(database, id)) {
+    meshes.cloud_report = cloud->report;
+    Statement points =
+        database.Prepare("SELECT points FROM clouds WHERE object_id = ?");
+    points.Bind(id).Step();
+    meshes.cloud = Unwrap(DecodePoints(points.Blob(0)));
+  }
   return meshes;
 }
 

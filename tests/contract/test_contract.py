@@ -197,6 +197,27 @@ def test_a_point_cloud_becomes_a_solid(contract):
     assert "200" in few["detail"]
 
 
+def test_search_finds_the_most_similar_objects_first(contract, world):
+    before = contract.call("listObjects", 200)["items"]
+    found = contract.call("searchByShape", 200, body=world["novel_bytes"],
+                          query={"role": "example"})["items"]
+    assert found[0]["object"]["category"] == "mug"
+    assert found[0]["similarity"] > 0.7
+    likeness = [item["similarity"] for item in found]
+    assert likeness == sorted(likeness, reverse=True)
+    assert contract.call("listObjects", 200)["items"] == before
+    example = contract.call("getMesh", 200, path={"id": world["example"]["id"]},
+                            query={"format": "stl"})
+    same = contract.call("searchByShape", 200, body=example,
+                         query={"category": "mug", "limit": 1})["items"]
+    assert [item["object"]["id"] for item in same] == [world["example"]["id"]]
+    assert same[0]["similarity"] > 0.99
+    contract.call("searchByShape", 400, body=example, query={"limit": 0})
+    contract.call("searchByShape", 404, body=example, query={"category": "cup"})
+    contract.call("searchByShape", 422, body=b"solid nothing\n")
+    contract.call("searchByShape", 400)
+
+
 def test_every_mesh_format_is_taken(contract, world):
     path = {"id": world["example"]["id"]}
     for name in ("obj", "stl", "ply", "glb"):
@@ -714,7 +735,7 @@ def test_a_strange_name_in_the_path_is_a_404(contract, name):
 
 
 def test_what_is_not_built_says_so(contract):
-    for operation in ("searchByShape", "listBackups", "postBackup"):
+    for operation in ("listBackups", "postBackup"):
         assert contract.call(operation, 501)["code"] == "not_implemented"
 
 

@@ -1,5 +1,6 @@
 #include "tests/support/workshop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -161,20 +162,53 @@ TriangleMesh LoadObj(const std::string& path) {
   return ParseObj(ReadText(path));
 }
 
-LabelledMesh LoadMug(const std::string& name) {
-  LabelledMesh mug{LoadObj(kData + "mug/" + name + ".obj"), {}};
-  const json labels =
-      json::parse(ReadText(kData + "mug/" + name + ".labels.json"));
-  mug.face_labels.assign(mug.mesh_O.num_triangles(), -1);
+LabelledMesh LoadObject(const std::string& category, const std::string& name) {
+  const std::string path = kData + category + "/" + name;
+  LabelledMesh object{LoadObj(path + ".obj"), {}};
+  const json labels = json::parse(ReadText(path + ".labels.json"));
+  object.face_labels.assign(object.mesh_O.num_triangles(), -1);
   for (size_t label = 0; label < labels.at("labels").size(); ++label) {
     const std::string part = labels.at("labels")[label];
     for (const json& range : labels.at("faces").at(part)) {
       for (int f = range.at(0); f < range.at(1); ++f) {
-        mug.face_labels[f] = static_cast<int>(label);
+        object.face_labels[f] = static_cast<int>(label);
       }
     }
   }
-  return mug;
+  return object;
+}
+
+LabelledMesh LoadMug(const std::string& name) {
+  return LoadObject("mug", name);
+}
+
+Category LoadCategory(const std::string& name) {
+  const json file = json::parse(ReadText(kData + name + "/category.json"));
+  Category category;
+  category.name = name;
+  std::vector<std::string>& labels = category.vocabulary.labels;
+  for (const json& part : file.at("parts")) {
+    labels.push_back(part.at("label"));
+  }
+  const auto index = [&labels](const json& label) {
+    return static_cast<int>(
+        std::find(labels.begin(), labels.end(), label.get<std::string>()) -
+        labels.begin());
+  };
+  for (const json& pair : file.at("topology")) {
+    category.vocabulary.adjacency.emplace_back(index(pair[0]), index(pair[1]));
+  }
+  const json& settings = file.at("segmentation");
+  category.segmentation.max_residual = settings.at("max_residual");
+  category.segmentation.min_area_ratio = settings.at("min_area_ratio");
+  category.segmentation.max_area_ratio = settings.at("max_area_ratio");
+  for (const json& object : file.at("examples")) {
+    category.examples.push_back(object.at("name"));
+  }
+  for (const json& object : file.at("novel")) {
+    category.novel.push_back(object.at("name"));
+  }
+  return category;
 }
 
 PartVocabulary MakeMugVocabulary() { return {{"body", "handle"}, {{0, 1}}}; }

@@ -6,6 +6,7 @@
 
 #include "engine/geometry/triangle_mesh.h"
 #include "engine/hand/hand_model.h"
+#include "engine/parameters/transfer_parameters.h"
 #include "engine/segmentation/part.h"
 
 namespace graspdb::workshop {
@@ -25,6 +26,19 @@ TriangleMesh MakeSphere(double radius, int rings = 32);
 TriangleMesh ParseObj(const std::string& text);
 /** The same of a file. @pre It exists. */
 TriangleMesh LoadObj(const std::string& path);
+
+/** A mesh of data/<category> and its labels. */
+LabelledMesh LoadObject(const std::string& category, const std::string& name);
+
+/** data/<name>/category.json. */
+struct Category {
+  std::string name;
+  PartVocabulary vocabulary;
+  SegmentationParameters segmentation;
+  std::vector<std::string> examples;
+  std::vector<std::string> novel;
+};
+Category LoadCategory(const std::string& name);
 
 /** A mesh of data/mug and its labels. */
 LabelledMesh LoadMug(const std::string& name);

@@ -200,5 +200,27 @@ TEST(AlignSurfaces, RefusesTooFewSamples) {
   EXPECT_THROW(RefineAlignment(MakeCross(), few, {}, {}), ContractViolation);
 }
 
+TEST(AlignSurfaces, FindsThePoseOfASurfaceThatIsSeenFromOneSide) {
+  const TriangleMesh mug = workshop::LoadMug("classic").mesh_O;
+  const RigidTransform X_NE = MakeRandomPose(9);
+  const SurfaceSamples all = SampleSurface(CalcTransformed(mug, X_NE), 3000, 2);
+  SurfaceSamples seen;
+  for (int i = 0; i < all.size(); ++i) {
+    if ((X_NE.rotation.transpose() * all.normals[i]).y() > -0.2) continue;
+    seen.points.push_back(all.points[i]);
+    seen.normals.push_back(all.normals[i]);
+    seen.faces.push_back(all.faces[i]);
+  }
+  AlignmentOptions options;
+  options.partial_N = true;
+  const SurfaceAlignment found =
+      AlignSurfaces(SampleSurface(mug, 1500, 1), seen, options);
+  EXPECT_LT(found.residual, 0.01);
+  EXPECT_LT(CalcAngleBetween(found.X_NE.rotation, X_NE.rotation), 5 * kDegree);
+  options.partial_N = false;
+  EXPECT_GT(AlignSurfaces(SampleSurface(mug, 1500, 1), seen, options).residual,
+            5.0 * found.residual);
+}
+
 }  // namespace
 }  // namespace graspdb
