@@ -42,6 +42,7 @@ constexpr double kThinShare = 0.3;
 constexpr double kOneSidedAlpha = 0.35;  // Of the diagonal, at least.
 constexpr double kHollowGap = 0.3;       // Offsets.
 constexpr double kGrowth = 1.5;          // Of alpha while the wrap is hollow.
+constexpr double kFlatness = 1e-3;       // Of the diagonal, rms.
 constexpr int kSmoothings = 8;
 constexpr double kLeastHalf = 0.001;  // Of a wall's thickness, m.
 
@@ -100,6 +101,22 @@ double CalcNoise(const Points& points) {
     residuals.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
   }
   return CalcMedian(std::move(residuals));
+}
+
+// The points' rms distance from their best plane.
+double CalcThickness(const Points& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    mean += p / static_cast<double>(points.size());
+  }
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    spread += (p - mean) * (p - mean).transpose() /
+              static_cast<double>(points.size());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(
+      spread, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
 }
 
 // The points of clusters that hold enough of all.
@@ -428,6 +445,9 @@ Result<ReconstructedSurface> ReconstructSurface(const Points& points_O) {
       CalcHiddenShare(points, report.spacing, report.noise) < kLeastHiddenShare;
   if (report.one_sided) {
     alpha = std::max(alpha, kOneSidedAlpha * (high - low).norm());
+  }
+  if (CalcThickness(points) < kFlatness * (high - low).norm()) {
+    return MakeError("the cloud's points lie in one plane");
   }
   TriangleMesh wrap = Wrap(points, alpha, offset);
   // Where the wrap got in through a hole among the points, or where there are

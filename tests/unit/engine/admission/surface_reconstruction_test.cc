@@ -121,6 +121,14 @@ TEST(SurfaceReconstruction, RefusesWhatTellsTooLittle) {
   EXPECT_THAT(few.error().message, HasSubstr("at least 200"));
   EXPECT_FALSE(
       ReconstructSurface(Points(500, Eigen::Vector3d(1, 2, 3))).has_value());
+  Points plane;
+  for (const Eigen::Vector3d& p :
+       MakeCloud(workshop::MakeSphere(0.04, 40), 800, 0.0)) {
+    plane.emplace_back(p.x(), p.y(), 0.5 * p.x());
+  }
+  const auto flat = ReconstructSurface(plane);
+  ASSERT_FALSE(flat.has_value());
+  EXPECT_THAT(flat.error().message, HasSubstr("in one plane"));
 }
 
 }  // namespace
