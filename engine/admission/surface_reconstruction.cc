@@ -15,6 +15,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "engine/geometry/subdivision.h"
 #include "engine/math/kd_tree.h"
 
 namespace graspdb {
@@ -294,8 +295,8 @@ Thinness CalcThinness(const TriangleMesh& wrap, const Points& points,
   return result;
 }
 
-// Cuts every edge in two until none is longer than that.
-TriangleMesh Subdivide(TriangleMesh mesh, double longest) {
+// Until no edge is longer than that.
+TriangleMesh SubdivideTo(TriangleMesh mesh, double longest) {
   const auto has_long_edge = [&] {
     for (int f = 0; f < mesh.num_triangles(); ++f) {
       for (int k = 0; k < 3; ++k) {
@@ -308,27 +309,7 @@ TriangleMesh Subdivide(TriangleMesh mesh, double longest) {
     return false;
   };
   while (has_long_edge() && mesh.num_triangles() < kMostPoints) {
-    std::vector<Eigen::Vector3d> vertices = mesh.vertices();
-    std::vector<Eigen::Vector3i> triangles;
-    std::map<std::pair<int, int>, int> middle;
-    for (const Eigen::Vector3i& t : mesh.triangles()) {
-      Eigen::Vector3i m;
-      for (int k = 0; k < 3; ++k) {
-        const std::pair<int, int> edge = std::minmax({t[k], t[(k + 1) % 3]});
-        const auto [it, fresh] =
-            middle.try_emplace(edge, static_cast<int>(vertices.size()));
-        if (fresh) {
-          vertices.push_back(0.5 *
-                             (vertices[edge.first] + vertices[edge.second]));
-        }
-        m[k] = it->second;
-      }
-      triangles.emplace_back(t[0], m[0], m[2]);
-      triangles.emplace_back(m[0], t[1], m[1]);
-      triangles.emplace_back(m[2], m[1], t[2]);
-      triangles.push_back(m);
-    }
-    mesh = TriangleMesh(std::move(vertices), std::move(triangles));
+    mesh = Subdivide(mesh);
   }
   return mesh;
 }
@@ -462,7 +443,7 @@ Result<ReconstructedSurface> ReconstructSurface(const Points& points_O) {
     wrap = Wrap(points, alpha, offset);
   }
   // What bridges much is coarse.
-  wrap = Subdivide(std::move(wrap), 2.5 * report.spacing);
+  wrap = SubdivideTo(std::move(wrap), 2.5 * report.spacing);
   result.mesh_O = DrawBack(wrap, points, report.spacing, offset, report.noise);
   if (report.num_outliers > 0) {
     result.steps.push_back(

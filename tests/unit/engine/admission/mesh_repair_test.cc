@@ -383,7 +383,9 @@ TEST(Decimate, StopsWhereTheTopologyDoes) {
 
 TEST(RepairMesh, MakesASolidOfEveryExtraObject) {
   const char* folder = std::getenv("GRASPDB_EXTRA_OBJECTS");
-  if (folder == nullptr) GTEST_SKIP() << "GRASPDB_EXTRA_OBJECTS is not set";
+  if (folder == nullptr)
+    GTEST_SKIP() << "other people's meshes are not in the repository: "
+                    "GRASPDB_EXTRA_OBJECTS names a folder";
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".obj") continue;

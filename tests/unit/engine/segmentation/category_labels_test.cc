@@ -2,7 +2,6 @@
 // coarse, fine, and with noise.
 
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 
 #include "engine/admission/mesh_repair.h"
 #include "engine/base/random.h"
+#include "engine/geometry/subdivision.h"
 #include "engine/geometry/surface_index.h"
 #include "engine/geometry/surface_sampling.h"
 #include "engine/segmentation/part_segmentation.h"
@@ -18,32 +18,11 @@
 namespace graspdb {
 namespace {
 
-// Every triangle into four.
-LabelledMesh Subdivide(const LabelledMesh& coarse) {
-  std::vector<Eigen::Vector3d> vertices = coarse.mesh_O.vertices();
-  std::vector<Eigen::Vector3i> triangles;
-  std::map<std::pair<int, int>, int> middles;
-  LabelledMesh fine;
-  for (int f = 0; f < coarse.mesh_O.num_triangles(); ++f) {
-    const Eigen::Vector3i& t = coarse.mesh_O.triangles()[f];
-    Eigen::Vector3i m;
-    for (int k = 0; k < 3; ++k) {
-      const std::pair<int, int> edge = std::minmax({t[k], t[(k + 1) % 3]});
-      const auto [it, fresh] =
-          middles.try_emplace(edge, static_cast<int>(vertices.size()));
-      if (fresh) {
-        vertices.push_back(0.5 *
-                           (vertices[edge.first] + vertices[edge.second]));
-      }
-      m[k] = it->second;
-    }
-    triangles.emplace_back(t[0], m[0], m[2]);
-    triangles.emplace_back(m[0], t[1], m[1]);
-    triangles.emplace_back(m[2], m[1], t[2]);
-    triangles.push_back(m);
-    fine.face_labels.insert(fine.face_labels.end(), 4, coarse.face_labels[f]);
+LabelledMesh Refine(const LabelledMesh& coarse) {
+  LabelledMesh fine{Subdivide(coarse.mesh_O), {}};
+  for (const int label : coarse.face_labels) {
+    fine.face_labels.insert(fine.face_labels.end(), 4, label);
   }
-  fine.mesh_O = TriangleMesh(std::move(vertices), std::move(triangles));
   return fine;
 }
 
@@ -120,8 +99,8 @@ TEST_P(CategoryLabels, OfTurnedCoarseFineAndNoisyObjectsAreRight) {
   for (const std::string& name : category_.novel) {
     const LabelledMesh object = workshop::LoadObject(category_.name, name);
     LabelledMesh fine = object;
-    while (fine.mesh_O.num_triangles() < 12'500) fine = Subdivide(fine);
-    fine = Subdivide(fine);
+    while (fine.mesh_O.num_triangles() < 12'500) fine = Refine(fine);
+    fine = Refine(fine);
     const std::pair<const char*, LabelledMesh> variants[] = {
         {"turned", Turn(object, 5)},
         {"coarse", Turn(Coarsen(object, 700), 6)},
