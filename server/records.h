@@ -108,7 +108,7 @@ struct StoredObject {
 /** A stored object E beside the mesh N that it was searched by. */
 struct SimilarObject {
   StoredObject object;
-  double similarity{0.0};  ///< 1 for a copy, 0 at twice the usual limit.
+  double similarity{0.0};  ///< 1 for a copy, 0 for the wholly unlike.
   double residual{0.0};    ///< Of the alignment, squared rms radii.
   double scale{1.0};       ///< E is scaled by this about its origin …
   RigidTransform X_NE;     ///< … and lies so in frame N.

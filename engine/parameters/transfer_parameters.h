@@ -16,6 +16,7 @@ struct SegmentationParameters {
   double pairwise_weight{2.0};
   double min_island_share{0.02};
   double max_residual{0.12};
+  double half_similarity{0.065};
   double min_area_ratio{0.5};
   double max_area_ratio{2.0};
   double min_confidence{0.6};
@@ -45,6 +46,9 @@ struct SegmentationParameters {
     f("max_residual", self.max_residual,
       ParameterInfo{"1", 0, 10,
                     "ours: mugs reach 0.11; a larger one is foreign"});
+    f("half_similarity", self.half_similarity,
+      ParameterInfo{"1", 1e-3, 10,
+                    "ours: dissimilarity of similarity 0.5, where auto ends"});
     f("min_area_ratio", self.min_area_ratio,
       ParameterInfo{"1", 0, 1, "ours: a part's area share over the example's"});
     f("max_area_ratio", self.max_area_ratio,

@@ -33,6 +33,8 @@ constexpr double kMaxStretch = 1.8;
 // Holds back the directions that the matches leave open, as a share of the
 // matches' weight.
 constexpr double kDamping = 0.02;
+// Of the unstretched residual in the dissimilarity.
+constexpr double kUnstretchedShare = 0.3;
 
 // The rotation of least squares for a cross-covariance (Umeyama 1991).
 Eigen::Matrix3d CalcNearestRotation(const Eigen::Matrix3d& covariance) {
@@ -225,6 +227,8 @@ class Aligner {
     }
     result.X_NE.translation = result.map_NE * E_.centre -
                               result.X_NE.rotation * (result.scale * E_.centre);
+    result.unstretched_residual =
+        CalcResidual(Match(E_, N_, FromAlignment(result)), options_.partial_N);
     return result;
   }
 
@@ -329,6 +333,16 @@ SurfaceAlignment RefineAlignment(const SurfaceSamples& samples_E,
   const Aligner aligner(samples_E, samples_N, options);
   return aligner.ToAlignment(
       aligner.Polish(aligner.FromAlignment(initial), kLocalSteps));
+}
+
+double CalcDissimilarity(const SurfaceAlignment& alignment) {
+  return alignment.residual +
+         kUnstretchedShare * alignment.unstretched_residual;
+}
+
+double CalcSimilarity(const SurfaceAlignment& alignment, double half) {
+  GRASPDB_EXPECTS(half > 0.0);
+  return std::exp2(-CalcDissimilarity(alignment) / half);
 }
 
 double CalcAlignmentDeviation(const SurfaceSamples& samples_E,

@@ -23,6 +23,8 @@ struct SurfaceAlignment {
    samples under map_NE, squared rms radii of N: 0 for copies, small within a
    category, large for foreign objects. */
   double residual{0.0};
+  /** The same under (X_NE, scale) alone: what the stretch hides shows here. */
+  double unstretched_residual{0.0};
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& p_E) const {
     return X_NE * Eigen::Vector3d(scale * p_E);
@@ -68,6 +70,15 @@ SurfaceAlignment RefineAlignment(const SurfaceSamples& samples_E,
                                  const SurfaceSamples& samples_N,
                                  const SurfaceAlignment& initial,
                                  const AlignmentOptions& options);
+
+/** How unlike the two surfaces are, squared rms radii: the residual and a share
+ of what it needs the stretch for, so that a knife stretched into a hammer is
+ less of a hammer than a mallet is. */
+double CalcDissimilarity(const SurfaceAlignment& alignment);
+
+/** 1 for copies, one half at the dissimilarity `half`, towards 0 beyond.
+ @pre half > 0. */
+double CalcSimilarity(const SurfaceAlignment& alignment, double half);
 
 /** The sum that the rigid alignment minimises,
  Σ_a |R a + T - b_a|² / r² + λ arccos²(n_b · R n_a),

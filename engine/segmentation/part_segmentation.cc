@@ -56,7 +56,8 @@ std::optional<Match> FindBestExample(const SurfaceSamples& samples_N,
     match.samples_E =
         SampleSurface(examples[i].mesh_O, parameters.samples, seed);
     match.alignment = AlignSurfaces(match.samples_E, samples_N, options);
-    if (!best || match.alignment.residual < best->alignment.residual) {
+    if (!best || CalcDissimilarity(match.alignment) <
+                     CalcDissimilarity(best->alignment)) {
       best = std::move(match);
     }
   }
@@ -262,7 +263,7 @@ Result<SegmentationResult> SegmentObject(
   result.scale = match->alignment.scale;
   result.residual = match->alignment.residual;
   result.similarity =
-      std::max(0.0, 1.0 - 0.5 * result.residual / parameters.max_residual);
+      CalcSimilarity(match->alignment, parameters.half_similarity);
 
   Judge judge(vocabulary, parameters);
   judge.CheckResidual(result.residual);

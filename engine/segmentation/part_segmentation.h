@@ -28,11 +28,11 @@ struct SegmentationResult {
    be closed. */
   std::vector<Part> parts;
   SegmentationVerdict verdict{SegmentationVerdict::kForeign};
-  int example{0};          ///< The example with the lowest residual.
+  int example{0};          ///< The most similar one.
   RigidTransform X_NE;     ///< Example E in the object's frame N …
   double scale{1.0};       ///< … after E is scaled by this about its origin.
   double residual{0.0};    ///< e of algorithms.md, squared rms radii.
-  double similarity{0.0};  ///< 1 at residual 0, 0 at twice the limit.
+  double similarity{0.0};  ///< CalcSimilarity(), with half_similarity.
   std::vector<std::string> warnings;  ///< In words, for the user.
 };
 

@@ -69,7 +69,7 @@ Result<std::vector<SimilarObject>> Service::SearchByShape(
       std::max(kFewestCandidates, kCandidatesPerAnswer * query.limit));
   if (candidates.size() > most) candidates.resize(most);
 
-  const double max_residual = SegmentationParameters{}.max_residual;
+  const double half = SegmentationParameters{}.half_similarity;
   std::vector<SurfaceSamples> samples_E;
   for (const Candidate& candidate : candidates) {
     GRASPDB_TRY(meshes, store_->ReadObjectMeshes(candidate.object.id));
@@ -83,8 +83,8 @@ Result<std::vector<SimilarObject>> Service::SearchByShape(
       const SurfaceAlignment alignment =
           AlignSurfaces(samples_E[c], samples_N, AlignmentOptions{});
       found[c] = {std::move(candidates[c].object),
-                  std::max(0.0, 1.0 - 0.5 * alignment.residual / max_residual),
-                  alignment.residual, alignment.scale, alignment.X_NE};
+                  CalcSimilarity(alignment, half), alignment.residual,
+                  alignment.scale, alignment.X_NE};
     });
   });
   if (context.Cancelled()) {
@@ -92,7 +92,7 @@ Result<std::vector<SimilarObject>> Service::SearchByShape(
   }
   std::stable_sort(
       found.begin(), found.end(),
-      [](const auto& a, const auto& b) { return a.residual < b.residual; });
+      [](const auto& a, const auto& b) { return a.similarity > b.similarity; });
   if (std::ssize(found) > query.limit) {
     found.resize(static_cast<size_t>(query.limit));
   }

@@ -1,5 +1,6 @@
 #include "server/jobs/segmentation.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -10,6 +11,22 @@
 
 namespace graspdb {
 namespace {
+
+// Without a category named, less than this is no answer …
+constexpr double kLeastSimilarity = 0.5;
+// … and two that differ by less are told of both.
+constexpr double kTooClose = 0.1;
+constexpr size_t kMostNamed = 3;
+
+// "mug 0.81, hammer 0.12"
+std::string NameNearest(const std::vector<SegmentedObject>& nearest) {
+  std::string names;
+  for (size_t i = 0; i < std::min(nearest.size(), kMostNamed); ++i) {
+    names += fmt::format("{}{} {:.2f}", i == 0 ? "" : ", ", nearest[i].category,
+                         nearest[i].record.similarity);
+  }
+  return names;
+}
 
 // Per face of `to`, the label of the face of `from` nearest to its centroid.
 std::vector<int> CarryLabels(const TriangleMesh& from,
@@ -211,7 +228,7 @@ Result<SegmentedObject> SegmentByAnyCategory(const Store& store,
                                              const std::string& except,
                                              uint64_t seed,
                                              ExecutionContext& context) {
-  std::optional<SegmentedObject> best;
+  std::vector<SegmentedObject> nearest;  // One per category that has examples.
   PageRequest page{1000, ""};
   do {
     GRASPDB_TRY(categories, store.ListCategories(page));
@@ -221,26 +238,34 @@ Result<SegmentedObject> SegmentByAnyCategory(const Store& store,
       if (!found && found.error().code == ErrorCode::kCancelled) {
         return found.error();
       }
-      if (found &&
-          (!best || found->record.similarity > best->record.similarity)) {
-        best = std::move(*found);
-      }
+      if (found) nearest.push_back(*std::move(found));
     }
     page.cursor = categories.next_cursor;
   } while (!page.cursor.empty());
-  if (!best) {
+  if (nearest.empty()) {
     return Error{ErrorCode::kConflict,
                  "There is no example of any category to compare with.",
                  "graspdb populate data", "category"};
   }
-  if (best->record.verdict == ToString(SegmentationVerdict::kForeign)) {
+  std::stable_sort(nearest.begin(), nearest.end(),
+                   [](const SegmentedObject& a, const SegmentedObject& b) {
+                     return a.record.similarity > b.record.similarity;
+                   });
+  SegmentedObject& best = nearest.front();
+  if (best.record.similarity < kLeastSimilarity ||
+      best.record.verdict == ToString(SegmentationVerdict::kForeign)) {
     return Error{ErrorCode::kNotInCategory,
-                 fmt::format("The object is like no example; the nearest is a "
-                             "{}, with similarity {:.2f}.",
-                             best->category, best->record.similarity),
+                 "The object is like no example; the nearest are " +
+                     NameNearest(nearest) + ".",
                  "name its category, or add an example like it", "category"};
   }
-  return *best;
+  if (nearest.size() > 1 &&
+      nearest[1].record.similarity > best.record.similarity - kTooClose) {
+    best.record.warnings.push_back(
+        fmt::format("taken for a {}, but almost as much like a {}: {}",
+                    best.category, nearest[1].category, NameNearest(nearest)));
+  }
+  return std::move(best);
 }
 
 }  // namespace graspdb

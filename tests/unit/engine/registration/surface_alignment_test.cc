@@ -193,6 +193,28 @@ TEST(AlignSurfaces, LeavesALargeResidualBetweenForeignShapes) {
   EXPECT_GT(AlignSurfaces(mug, bar, {}).residual, 0.13);
 }
 
+TEST(CalcSimilarity, HalvesWithEachLimitOfDissimilarity) {
+  SurfaceAlignment alignment;
+  EXPECT_EQ(CalcSimilarity(alignment, 0.05), 1.0);
+  alignment.residual = 0.02;
+  alignment.unstretched_residual = 0.1;
+  EXPECT_NEAR(CalcDissimilarity(alignment), 0.05, 1e-12);
+  EXPECT_NEAR(CalcSimilarity(alignment, 0.05), 0.5, 1e-12);
+  EXPECT_NEAR(CalcSimilarity(alignment, 0.025), 0.25, 1e-12);
+}
+
+TEST(CalcDissimilarity, SeesTheStretchThatTheResidualForgives) {
+  const TriangleMesh bar = workshop::MakeBox({0.3, 0.06, 0.06}, 20);
+  std::vector<Eigen::Vector3d> vertices = bar.vertices();
+  for (Eigen::Vector3d& p : vertices) p.x() *= 0.6;
+  const TriangleMesh stub(vertices, bar.triangles());
+  const SurfaceAlignment alignment = AlignSurfaces(
+      SampleSurface(bar, 1000, 1), SampleSurface(stub, 1000, 1), {});
+  EXPECT_LT(alignment.residual, 0.01);
+  EXPECT_GT(alignment.unstretched_residual, 5.0 * alignment.residual);
+  EXPECT_GT(CalcDissimilarity(alignment), 2.0 * alignment.residual);
+}
+
 TEST(AlignSurfaces, RefusesTooFewSamples) {
   SurfaceSamples few = MakeCross();
   few.points.pop_back();

@@ -69,7 +69,7 @@ TEST_P(SegmentNovelMug, AgreesWithTheLabelsByHand) {
     EXPECT_TRUE(IsClosed(result.parts[label].solid_O));
     EXPECT_GT(result.parts[label].confidence, 0.8);
   }
-  EXPECT_GT(result.similarity, 0.5);
+  EXPECT_GT(result.similarity, 0.15);
 }
 
 TEST_P(SegmentNovelMug, GivesTheSameInAnyPoseAndUnit) {
@@ -139,7 +139,7 @@ TEST(SegmentObject, RefusesForeignShapesInWords) {
     const SegmentationResult result = Segment(mesh);
     EXPECT_EQ(result.verdict, SegmentationVerdict::kForeign);
     EXPECT_FALSE(result.warnings.empty());
-    EXPECT_LT(result.similarity, 0.7);
+    EXPECT_LT(result.similarity, 0.5);
   }
   EXPECT_TRUE(
       Mentions(Segment(workshop::MakeBox({0.3, 0.02, 0.02}, 20)), "residual"));
