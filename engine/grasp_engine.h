@@ -29,6 +29,8 @@ struct GraspSpace {
   std::vector<LearningRound> curve;
   std::vector<HandConfiguration> support_vectors;  ///< The collision-free ones.
   int configurations_tried{0};  ///< Hands closed and judged by the swarm.
+  /** Per grasp and label: PartSurfaces::CalcClearances() on the example. */
+  std::vector<std::vector<double>> clearances;
   double coverage{0.0};  ///< Share of (approach direction) bins reached, 0..1.
 
   bool operator==(const GraspSpace&) const = default;
@@ -37,7 +39,7 @@ struct GraspSpace {
 struct LearnRequest {
   std::shared_ptr<const HandModel> hand;
   Part part_E;
-  TriangleMesh whole_E;  ///< The object that the part was cut from.
+  LabelledMesh whole_E;  ///< The object that the part was cut from.
   Parameters parameters;
   uint64_t seed{1};
   int threads{0};  ///< 0: as many as there are cores.
@@ -63,6 +65,8 @@ struct TransferRecord {
   double example_epsilon_whole{0.0};     ///< Closed on its whole; 0: fails.
   double open_close_epsilon_part{0.0};   ///< Baseline; 0 when it fails.
   double open_close_epsilon_whole{0.0};  ///< Baseline; 0 when it fails.
+  std::vector<double> transferred_clearances;  ///< As GraspSpace has them.
+  std::vector<double> assembled_clearances;
   double robust{0.0};       ///< Share of 32 perturbed copies that stay stable.
   double penetration{0.0};  ///< Deepest overlap of hand and object, m.
 };
@@ -88,6 +92,9 @@ struct TransferRequest {
   /** For each novel part the grasp space of the example part of the same label;
    null for parts that no grasps are wanted for. */
   std::vector<std::shared_ptr<const GraspSpace>> grasp_spaces;
+  /** Labels that the hand keeps transfer.min_clearance off, on the example as
+   on the novel object. */
+  std::vector<int> keep_free;
   int sources_per_part{40};
   bool assemble{true};
   Parameters parameters;
@@ -103,7 +110,8 @@ struct TransferResult {
 
 /** Sec. V: maps, replans and assembles source grasps on a novel object. The
  source grasps are drawn by (seed, grasp space) before the novel object is
- looked at, equally from each quartile of eps.
+ looked at, equally from each quartile of eps of those that keep free what must
+ be.
  @retval kCancelled. */
 Result<TransferResult> Transfer(const TransferRequest& request,
                                 ExecutionContext& context);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "server/ids.h"
 
@@ -40,6 +41,26 @@ std::vector<std::string> FindPartsForTask(const StoredCategory& category,
     if (part.tasks.contains(task)) labels.push_back(part.label);
   }
   return labels;
+}
+
+std::vector<std::string> FindPartsKeptFree(const StoredCategory& category,
+                                           const std::string& task) {
+  std::vector<std::string> labels;
+  for (const CategoryPart& part : category.parts) {
+    if (part.keep_free.contains(task)) labels.push_back(part.label);
+  }
+  return labels;
+}
+
+std::map<std::string, double> NameClearances(
+    const std::vector<double>& clearances,
+    const std::vector<std::string>& labels, const std::string& held) {
+  std::map<std::string, double> named;
+  for (size_t i = 0; i < clearances.size() && i < labels.size(); ++i) {
+    if (labels[i] == held || !std::isfinite(clearances[i])) continue;
+    named[labels[i]] = clearances[i];
+  }
+  return named;
 }
 
 std::string MakeGraspId(const std::string& origin_id, GraspStage stage,
@@ -169,11 +190,12 @@ Result<JobState> ParseJobState(const std::string& text) {
 Result<TransferOutcome> ParseTransferOutcome(const std::string& text) {
   return Parse(
       text, "outcome",
-      std::array{
-          TransferOutcome::kSucceeded, TransferOutcome::kNoCorrespondence,
-          TransferOutcome::kNoContact, TransferOutcome::kUnstable,
-          TransferOutcome::kFingerCollision, TransferOutcome::kPalmCollision,
-          TransferOutcome::kTooFar, TransferOutcome::kUnreachable});
+      std::array{TransferOutcome::kSucceeded,
+                 TransferOutcome::kNoCorrespondence,
+                 TransferOutcome::kNoContact, TransferOutcome::kUnstable,
+                 TransferOutcome::kFingerCollision,
+                 TransferOutcome::kPalmCollision, TransferOutcome::kTooFar,
+                 TransferOutcome::kUnreachable, TransferOutcome::kNotKeptFree});
 }
 
 Result<double> ParseUnits(const std::string& units) {

@@ -37,6 +37,8 @@ struct PageRequest {
 struct CategoryPart {
   std::string label;
   std::map<std::string, std::string> tasks;  ///< Task name → note for people.
+  /** Tasks in which the hand keeps off this part → why. */
+  std::map<std::string, std::string> keep_free;
 
   bool operator==(const CategoryPart&) const = default;
 };
@@ -57,6 +59,10 @@ PartVocabulary MakeVocabulary(const StoredCategory& category);
 /** The labels of the category's parts that serve a task. */
 std::vector<std::string> FindPartsForTask(const StoredCategory& category,
                                           const std::string& task);
+
+/** Those that the hand keeps off in a task; none for an empty one. */
+std::vector<std::string> FindPartsKeptFree(const StoredCategory& category,
+                                           const std::string& task);
 
 enum class ObjectRole { kExample, kNovel };
 
@@ -198,6 +204,8 @@ struct StoredGrasp {
   std::optional<double> robust;    ///< 0..1; unknown for learned grasps.
   std::optional<double> physical;  ///< 0..1; unknown until verified.
   double penetration{0.0};         ///< m.
+  /** The gap, m, between the hand and each other part of the object. */
+  std::map<std::string, double> clearances;
   // Provenance.
   std::string grasp_space_id;   ///< Its own, or its source's.
   std::string transfer_id;      ///< Empty for a learned grasp.
@@ -206,6 +214,12 @@ struct StoredGrasp {
   std::string parameters_hash;
   uint64_t seed{1};
 };
+
+/** Clearances by label index, by name: without the held part's and those of
+ absent parts. */
+std::map<std::string, double> NameClearances(
+    const std::vector<double>& clearances,
+    const std::vector<std::string>& labels, const std::string& held);
 
 /** The id of grasp `index` of a grasp space or transfer. */
 std::string MakeGraspId(const std::string& origin_id, GraspStage stage,
@@ -248,6 +262,7 @@ struct StoredTransfer {
   GraspStage stage{GraspStage::kAssembly};  ///< The stage asked for.
   int sources_per_part{40};
   std::vector<std::string> part_labels;  ///< Those that grasps are wanted for.
+  std::vector<std::string> keep_free;    ///< Those that the hand keeps off.
   std::string parameters;                ///< Canonical JSON.
   std::string parameters_hash;
   uint64_t seed{1};

@@ -21,6 +21,11 @@ class CollisionShape {
   bool Intersects(const CollisionShape& other,
                   const RigidTransform& X_AB) const;
 
+  /** The least distance, m, between a triangle of this surface A and one of the
+   other, B; 0 where they meet. Takes tenths of milliseconds. */
+  double CalcDistance(const CollisionShape& other,
+                      const RigidTransform& X_AB) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

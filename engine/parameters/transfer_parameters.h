@@ -174,6 +174,7 @@ struct TransferLimits {
   double max_rotation{0.3490658503988659};
   double max_target_distance{0.010};
   int min_opposed_contacts{2};
+  double min_clearance{0.010};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -186,6 +187,9 @@ struct TransferLimits {
     f("min_opposed_contacts", self.min_opposed_contacts,
       ParameterInfo{"1", 2, 10,
                     "ours: opposed contacts with a target, at least"});
+    f("min_clearance", self.min_clearance,
+      ParameterInfo{"m", 0, 0.2,
+                    "ours: hand from a part that the task keeps free"});
   }
   bool operator==(const TransferLimits&) const = default;
 };

@@ -3,6 +3,7 @@
 #include "engine/base/parallel.h"
 #include "engine/cspace/active_learner.h"
 #include "engine/grasp_engine.h"
+#include "engine/pipeline/part_clearance.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/planning/grasp_space_search.h"
 #include "engine/quality/epsilon_quality.h"
@@ -21,7 +22,7 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
   const HandShape hand(request.hand);
   const Solid part(request.part_E.solid_O, request.part_E.num_surface_faces);
   std::optional<Solid> whole;
-  if (parameters.swarm.hold_on_whole) whole.emplace(request.whole_E);
+  if (parameters.swarm.hold_on_whole) whole.emplace(request.whole_E.mesh_O);
 
   // Sec. IV: approximate the configuration space …
   context.ReportProgress("configuration space", 0.05);
@@ -56,6 +57,13 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
     grasp.quality.volume = CalcWrenchVolume(
         CalcContactWrenches(grasp.contacts, part.mass(), parameters.contact));
   }
+  const PartSurfaces parts(request.whole_E);
+  result.clearances.resize(result.grasps.size());
+  ParallelFor(static_cast<int>(result.grasps.size()), [&](int i) {
+    const auto g = static_cast<size_t>(i);
+    result.clearances[g] =
+        parts.CalcClearances(hand, result.grasps[g].configuration);
+  });
   context.ReportProgress("done", 1.0);
   return result;
 }

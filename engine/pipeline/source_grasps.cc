@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "engine/base/random.h"
+#include "engine/pipeline/part_clearance.h"
 
 namespace graspdb {
 
-std::vector<int> DrawSourceGrasps(const std::vector<Grasp>& grasps, int count,
-                                  uint64_t seed) {
-  const int total = static_cast<int>(grasps.size());
+std::vector<int> DrawByQuartile(int total, int count, uint64_t seed) {
   std::vector<int> drawn;
   if (count >= total) {
     drawn.resize(total);
@@ -32,6 +31,24 @@ std::vector<int> DrawSourceGrasps(const std::vector<Grasp>& grasps, int count,
     drawn.insert(drawn.end(), pool.begin(), pool.begin() + wanted);
   }
   std::sort(drawn.begin(), drawn.end());
+  return drawn;
+}
+
+std::vector<int> DrawSourceGrasps(const GraspSpace& space,
+                                  const std::vector<int>& keep_free,
+                                  double min_clearance, int count,
+                                  uint64_t seed) {
+  std::vector<int> allowed;
+  for (size_t i = 0; i < space.grasps.size(); ++i) {
+    if (i < space.clearances.size() &&
+        !KeepsFree(space.clearances[i], keep_free, min_clearance)) {
+      continue;
+    }
+    allowed.push_back(static_cast<int>(i));
+  }
+  std::vector<int> drawn =
+      DrawByQuartile(static_cast<int>(allowed.size()), count, seed);
+  for (int& index : drawn) index = allowed[static_cast<size_t>(index)];
   return drawn;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/base/random.h"
 #include "engine/geometry/surface_sampling.h"
 #include "engine/grasp_engine.h"
+#include "engine/pipeline/part_clearance.h"
 #include "engine/pipeline/source_grasps.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/quality/epsilon_quality.h"
@@ -46,7 +47,8 @@ class Transferrer {
       : request_(request),
         parameters_(request.parameters),
         context_(context),
-        hand_(request.hand) {}
+        hand_(request.hand),
+        parts_N_(request.novel) {}
 
   Result<TransferResult> Run() {
     // The forty are fixed before the novel object is looked at.
@@ -54,7 +56,8 @@ class Transferrer {
     for (size_t p = 0; p < request_.grasp_spaces.size(); ++p) {
       if (!request_.grasp_spaces[p]) continue;
       for (const int source : DrawSourceGrasps(
-               request_.grasp_spaces[p]->grasps, request_.sources_per_part,
+               *request_.grasp_spaces[p], request_.keep_free,
+               parameters_.transfer.min_clearance, request_.sources_per_part,
                DeriveSeed(request_.seed, {kSources, p}))) {
         TransferRecord record;
         record.part = static_cast<int>(p);
@@ -202,6 +205,14 @@ class Transferrer {
     record.assembly = on_part.outcome;
     if (!on_part.grasp) return;
     record.transferred = Complete(std::move(*on_part.grasp), *pair.solid_N);
+    record.transferred_clearances =
+        parts_N_.CalcClearances(hand_, record.transferred->configuration);
+    if (!request_.assemble && !KeepsFree(record.transferred_clearances)) {
+      record.transfer = TransferOutcome::kNotKeptFree;
+      record.assembly = record.transfer;
+      record.transferred.reset();
+      return;
+    }
 
     // … and Sec. V-C: of the whole object.
     if (request_.assemble) {
@@ -210,6 +221,12 @@ class Transferrer {
                    DeriveSeed(request_.seed, {kAssemble, p, s}));
       record.assembly = on_whole.outcome;
       if (!on_whole.grasp) return;
+      record.assembled_clearances =
+          parts_N_.CalcClearances(hand_, on_whole.grasp->configuration);
+      if (!KeepsFree(record.assembled_clearances)) {
+        record.assembly = TransferOutcome::kNotKeptFree;
+        return;
+      }
       record.assembled = Complete(std::move(*on_whole.grasp), *whole_N_);
     }
     const Grasp& last =
@@ -245,6 +262,11 @@ class Transferrer {
     return task;
   }
 
+  bool KeepsFree(const std::vector<double>& clearances) const {
+    return graspdb::KeepsFree(clearances, request_.keep_free,
+                              parameters_.transfer.min_clearance);
+  }
+
   // Fills in what is not needed while searching.
   Grasp Complete(Grasp grasp, const Solid& solid) const {
     grasp.quality.hybrid = CalcHybrid(hand_, grasp, solid, parameters_);
@@ -260,6 +282,7 @@ class Transferrer {
   std::unique_ptr<Solid> whole_E_;
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
+  const PartSurfaces parts_N_;
 };
 
 }  // namespace

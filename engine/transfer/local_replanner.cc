@@ -302,6 +302,8 @@ const char* ToString(TransferOutcome outcome) {
       return "too_far";
     case TransferOutcome::kUnreachable:
       return "unreachable";
+    case TransferOutcome::kNotKeptFree:
+      return "not_kept_free";
   }
   return "unknown";
 }

@@ -12,6 +12,7 @@ enum class TransferOutcome {
   kUnstable,          ///< Closed, but eps stays below the limit.
   kTooFar,            ///< Stable, but too far from the example's grasp.
   kUnreachable,       ///< No collision-free way leads to it.
+  kNotKeptFree,       ///< Too near a part that the task keeps free.
 };
 
 /** The name on the wire, e.g. "palm_collision". */

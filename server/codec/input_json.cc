@@ -17,6 +17,20 @@ Error Invalid(const std::string& message, const std::string& field) {
 
 // ---- Categories -------------------------------------------------------------
 
+// An object of notes by task.
+void ReadNotes(JsonFields& fields, const std::string& path, const char* name,
+               std::map<std::string, std::string>& notes) {
+  const Json* json = fields.Find(name);
+  if (json == nullptr) return;
+  JsonFields entries(*json, path + "." + name);
+  if (json->is_object()) {
+    for (const auto& [task, note] : json->items()) {
+      entries.Read(task, notes[task]);
+    }
+  }
+  if (const auto read = entries.Finish(); !read) fields.Fail(read.error());
+}
+
 void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
   const Json* json = fields.Find("parts");
   if (json == nullptr) return;
@@ -27,14 +41,12 @@ void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
     JsonFields entry((*json)[i], path);
     CategoryPart part;
     entry.RequireText("label", part.label);
-    if (const Json* tasks = entry.Find("tasks")) {
-      JsonFields notes(*tasks, path + ".tasks");
-      if (tasks->is_object()) {
-        for (const auto& [task, note] : tasks->items()) {
-          notes.Read(task, part.tasks[task]);
-        }
+    ReadNotes(entry, path, "tasks", part.tasks);
+    ReadNotes(entry, path, "keep_free", part.keep_free);
+    for (const auto& [task, note] : part.keep_free) {
+      if (part.tasks.contains(task)) {
+        entry.Fail("keep_free", "tasks that do not hold this part");
       }
-      if (const auto read = notes.Finish(); !read) entry.Fail(read.error());
     }
     if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
     parts.push_back(std::move(part));
@@ -221,6 +233,25 @@ void ReadAnnotations(JsonFields& fields, HandAnnotations& annotations) {
   ReadIgnoredCollisions(fields, annotations);
 }
 
+void ReadGraspit(JsonFields& fields, std::optional<GraspitModel>& graspit) {
+  const Json* json = fields.Find("graspit");
+  if (json == nullptr) return;
+  JsonFields entry(*json, "graspit");
+  graspit.emplace();
+  entry.RequireText("robot", graspit->robot);
+  Eigen::Vector3d x_axis_H = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d z_axis_H = Eigen::Vector3d::UnitZ();
+  entry.Read("x_axis_H", x_axis_H);
+  entry.Read("z_axis_H", z_axis_H);
+  entry.Read("p_HG", graspit->X_HG.translation);
+  Eigen::Matrix3d& R_HG = graspit->X_HG.rotation;
+  R_HG << x_axis_H, z_axis_H.cross(x_axis_H), z_axis_H;
+  if (!(R_HG.transpose() * R_HG).isIdentity(1e-6)) {
+    entry.Fail("x_axis_H", "a unit vector, at right angles to z_axis_H");
+  }
+  if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
+}
+
 // ---- Orders -----------------------------------------------------------------
 
 void ReadParameters(JsonFields& fields, Parameters& parameters) {
@@ -337,6 +368,7 @@ Result<HandFile> HandFileFromJson(const std::string& text) {
   fields.Read("licence", ignored);
   fields.Read("source", ignored);
   ReadAnnotations(fields, file.annotations);
+  ReadGraspit(fields, file.graspit);
   GRASPDB_TRY_VOID(fields.Finish());
   if (file.title.empty()) file.title = file.annotations.name;
   return file;

@@ -44,11 +44,18 @@ Result<CategoryFile> CategoryFileFromJson(const std::string& text);
  @retval kInvalidArgument when ranges overlap or leave a face out. */
 Result<std::vector<std::string>> FaceLabelsFromJson(const std::string& text);
 
+/** The same hand among the robots of GraspIt!. */
+struct GraspitModel {
+  std::string robot;    ///< Its file, below the folder $GRASPIT.
+  RigidTransform X_HG;  ///< The frame of its palm.
+};
+
 /** hand.json, see data/hands. */
 struct HandFile {
   std::string title;
   std::string urdf;  ///< File name of the URDF.
   HandAnnotations annotations;
+  std::optional<GraspitModel> graspit;
 };
 Result<HandFile> HandFileFromJson(const std::string& text);
 

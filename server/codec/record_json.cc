@@ -126,6 +126,10 @@ Json Encode(const StoredGrasp& grasp, const HandModel& hand) {
   json["quality"] = EncodeQuality(grasp);
   json["contacts"] = EncodeContacts(grasp, hand);
   json["penetration_m"] = grasp.penetration;
+  json["clearances"] = Json::object();
+  for (const auto& [label, distance] : grasp.clearances) {
+    json["clearances"][label] = distance;
+  }
   json["provenance"] = EncodeProvenance(grasp);
   return json;
 }
@@ -322,6 +326,10 @@ std::string ToJson(const StoredCategory& category) {
     entry["label"] = part.label;
     entry["tasks"] = Json::object();
     for (const auto& [task, note] : part.tasks) entry["tasks"][task] = note;
+    entry["keep_free"] = Json::object();
+    for (const auto& [task, why] : part.keep_free) {
+      entry["keep_free"][task] = why;
+    }
     json["parts"].push_back(std::move(entry));
   }
   json["topology"] = Json::array();
@@ -506,6 +514,7 @@ std::string ToJson(const StoredTransfer& transfer) {
   json["hand"] = transfer.hand;
   json["stage"] = ToString(transfer.stage);
   json["parts"] = transfer.part_labels;
+  json["keep_free"] = transfer.keep_free;
   json["sources_per_part"] = transfer.sources_per_part;
   json["similarity"] = transfer.similarity;
   json["complete"] = transfer.complete;

@@ -121,7 +121,7 @@ Result<std::vector<StoredGraspSpace>> Service::LearnObject(
     LearnRequest request;
     request.hand = hand;
     request.part_E = lesson.solid;
-    request.whole_E = meshes.work;
+    request.whole_E = {meshes.work, meshes.work_labels};
     request.parameters = order.parameters;
     request.seed = order.seed;
     request.threads = options_.threads;

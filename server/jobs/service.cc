@@ -175,6 +175,8 @@ Result<Page<StoredGrasp>> Service::QueryGrasps(
   GRASPDB_TRY(category, store_->FindCategory(query.category));
   query.part_labels = FindPartsForTask(category, search.task);
   if (query.part_labels.empty()) return Page<StoredGrasp>();
+  query.keep_free = FindPartsKeptFree(category, search.task);
+  query.min_clearance = TransferLimits().min_clearance;
   return store_->QueryGrasps(query);
 }
 

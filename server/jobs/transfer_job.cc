@@ -42,6 +42,8 @@ struct Plan {
   Alignment alignment;
   /** For each novel part what was learned for its label, if it is wanted. */
   std::vector<std::optional<StoredGraspSpace>> spaces;
+  std::vector<std::string> labels;     ///< Of the category's parts.
+  std::vector<std::string> keep_free;  ///< Of them, what the task keeps free.
   std::vector<std::string> warnings;
 };
 
@@ -145,6 +147,8 @@ Result<Plan> MakePlan(const Store& store, const TransferOrder& order,
   GRASPDB_TRY(example_parts, store.ListParts(alignment.example_id));
   plan.novel_parts = std::move(novel_parts);
   plan.example_parts = std::move(example_parts);
+  plan.labels = MakeVocabulary(category).labels;
+  plan.keep_free = FindPartsKeptFree(category, order.task);
   GRASPDB_TRY(wanted, FindWantedLabels(order, category));
   int found = 0;
   for (const StoredPart& part : plan.novel_parts) {
@@ -194,6 +198,7 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
   row.engine_version = EngineVersion();
   row.similarity = plan.alignment.similarity;
   row.warnings = plan.warnings;
+  row.keep_free = plan.keep_free;
   std::string content = fmt::format(
       "transfer {} {} {} {} {}", row.engine_version, ToString(row.stage),
       row.sources_per_part, row.parameters_hash, row.seed);
@@ -203,6 +208,7 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
     content += " from " + plan.spaces[i]->id;
     row.part_labels.push_back(plan.novel_parts[i].label);
   }
+  for (const std::string& label : row.keep_free) content += " free " + label;
   row.id = MakeContentId(content);
   return row;
 }
@@ -238,6 +244,11 @@ Result<TransferRequest> MakeRequest(const Store& store,
     GRASPDB_TRY(space, store.ReadGraspSpace(record->id));
     request.grasp_spaces.back() =
         std::make_shared<const GraspSpace>(std::move(space));
+  }
+  for (const std::string& label : plan.keep_free) {
+    request.keep_free.push_back(static_cast<int>(
+        std::find(plan.labels.begin(), plan.labels.end(), label) -
+        plan.labels.begin()));
   }
   request.sources_per_part = order.sources;
   request.assemble = order.stage == GraspStage::kAssembly;
@@ -333,6 +344,9 @@ class RowMaker {
     row.category = transfer_.category;
     row.hand = transfer_.hand;
     row.grasp = grasp;
+    row.clearances = NameClearances(
+        whole ? record.assembled_clearances : record.transferred_clearances,
+        plan_.labels, row.part_label);
     row.targets_O = MatchTargets(grasp, source, record.targets_N);
     row.example_epsilon =
         whole ? record.example_epsilon_whole : record.example_epsilon;

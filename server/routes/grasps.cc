@@ -8,6 +8,7 @@
 #include "engine/render/png_encoder.h"
 #include "engine/render/scene_renderer.h"
 #include "server/codec/grasp_formats.h"
+#include "server/codec/graspit_world.h"
 #include "server/codec/parameters_json.h"
 #include "server/codec/record_json.h"
 #include "server/routes/routes.h"
@@ -17,27 +18,53 @@ namespace graspdb {
 namespace {
 
 /** How the grasps of an answer are written. */
-enum class GraspFormat { kJson, kCsv, kRos };
+enum class GraspFormat { kJson, kCsv, kRos, kGraspit };
 
-/** The parameter as. @retval kNotImplemented for graspit. */
-Result<GraspFormat> ReadFormat(QueryReader& query) {
+GraspFormat ReadFormat(QueryReader& query) {
   const auto as = query.Choice("as", {"json", "csv", "ros", "graspit"});
   if (as == "csv") return GraspFormat::kCsv;
   if (as == "ros") return GraspFormat::kRos;
-  if (as == "graspit") {
-    return Error{ErrorCode::kNotImplemented,
-                 "Grasps as GraspIt! worlds are not built yet.",
-                 "as takes json, csv, ros.", "as"};
-  }
+  if (as == "graspit") return GraspFormat::kGraspit;
   return GraspFormat::kJson;
 }
 
-HttpResponse MakeGraspsResponse(const std::vector<GraspOfHand>& grasps,
-                                GraspFormat format) {
+/** One world has one hand. */
+Result<std::string> MakeGraspitWorld(const Service& service,
+                                     const std::vector<GraspOfHand>& grasps) {
+  std::vector<const StoredGrasp*> list;
+  for (const GraspOfHand& pair : grasps) {
+    if (pair.grasp->hand != grasps.front().grasp->hand) {
+      return Error{ErrorCode::kInvalidArgument,
+                   "A world of GraspIt! holds the grasps of one hand.",
+                   "name the hand too", "hand"};
+    }
+    list.push_back(pair.grasp);
+  }
+  if (list.empty()) return std::string("<?xml version=\"1.0\" ?>\n<world/>\n");
+  const HandModel& hand = *grasps.front().hand;
+  GRASPDB_TRY(stored, service.store().FindHand(hand.name()));
+  GRASPDB_TRY(file, HandFileFromJson(stored.annotations));
+  if (!file.graspit) {
+    return Error{ErrorCode::kInvalidArgument,
+                 "The hand '" + hand.name() + "' is none of GraspIt!'s robots.",
+                 "as takes json, csv, ros", "as"};
+  }
+  return GraspsToGraspit(list, hand, *file.graspit);
+}
+
+Result<HttpResponse> MakeGraspsResponse(const Service& service,
+                                        const std::vector<GraspOfHand>& grasps,
+                                        GraspFormat format) {
   if (format == GraspFormat::kRos) {
     return MakeJsonResponse(200, GraspsToRos(grasps));
   }
   HttpResponse response;
+  if (format == GraspFormat::kGraspit) {
+    GRASPDB_TRY(world, MakeGraspitWorld(service, grasps));
+    response.content_type = "application/xml";
+    response.body = std::move(world);
+    return response;
+  }
   response.content_type = "text/csv; charset=utf-8";
   response.body = GraspsToCsv(grasps);
   return response;
@@ -124,20 +151,19 @@ Result<HttpResponse> ListGrasps(const Service& service,
                                 const HttpRequest& request) {
   QueryReader query(request.query);
   GRASPDB_TRY(search, ReadSearch(query));
-  const auto format = ReadFormat(query);
+  const GraspFormat format = ReadFormat(query);
   GRASPDB_TRY_VOID(query.Finish());
-  if (!format) return format.error();
   GRASPDB_TRY_VOID(CheckNames(service.store(), search));
   GRASPDB_TRY(page, service.QueryGrasps(search));
   GRASPDB_TRY(pairs, PairWithHands(service, page.items));
-  if (*format == GraspFormat::kJson) {
+  if (format == GraspFormat::kJson) {
     std::vector<std::string> items;
     for (const auto& [grasp, hand] : pairs) {
       items.push_back(ToJson(*grasp, *hand));
     }
     return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
   }
-  HttpResponse response = MakeGraspsResponse(pairs, *format);
+  GRASPDB_TRY(response, MakeGraspsResponse(service, pairs, format));
   if (!page.next_cursor.empty()) {
     response.headers.emplace_back("X-Next-Cursor", page.next_cursor);
   }
@@ -147,16 +173,15 @@ Result<HttpResponse> ListGrasps(const Service& service,
 Result<HttpResponse> GetGrasp(const Service& service,
                               const HttpRequest& request) {
   QueryReader query(request.query);
-  const auto format = ReadFormat(query);
+  const GraspFormat format = ReadFormat(query);
   GRASPDB_TRY_VOID(query.Finish());
-  if (!format) return format.error();
   GRASPDB_TRY(grasp,
               service.store().FindGrasp(request.path_parameters.at("id")));
   GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
-  if (*format == GraspFormat::kJson) {
+  if (format == GraspFormat::kJson) {
     return MakeJsonResponse(200, ToJson(grasp, *hand));
   }
-  return MakeGraspsResponse({{&grasp, hand}}, *format);
+  return MakeGraspsResponse(service, {{&grasp, hand}}, format);
 }
 
 Result<HttpResponse> DrawGrasp(const Service& service,
@@ -257,9 +282,8 @@ Result<void> CheckTransferOrder(const TransferOrder& order, bool has_mesh) {
 Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
                                 const HttpRequest& request) {
   QueryReader query(request.query);
-  const auto format = ReadFormat(query);
+  const GraspFormat format = ReadFormat(query);
   GRASPDB_TRY(order, ReadTransferOrder(request, query));
-  if (!format) return format.error();
   const bool has_mesh = !request.body.empty() || !request.files.empty();
   GRASPDB_TRY_VOID(CheckTransferOrder(order, has_mesh));
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
@@ -270,11 +294,12 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
         GRASPDB_TRY(answer,
                     service.DescribeTransfer(done.result_id, order.count));
         HttpResponse response;
-        if (*format == GraspFormat::kJson) {
+        if (format == GraspFormat::kJson) {
           response = MakeJsonResponse(200, ToJson(answer));
         } else {
           GRASPDB_TRY(pairs, PairWithHands(service, answer.grasps));
-          response = MakeGraspsResponse(pairs, *format);
+          GRASPDB_TRY(written, MakeGraspsResponse(service, pairs, format));
+          response = std::move(written);
         }
         for (const auto& [stage, seconds] : answer.transfer.seconds) {
           response.timings.emplace_back(stage, seconds * 1e3);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <utility>
 
 #include "server/ids.h"
@@ -127,6 +129,38 @@ void InsertSpaceRow(Database& database, const StoredGraspSpace& record,
   }
 }
 
+// The labels of a category's parts, by label index.
+std::vector<std::string> ListLabels(Database& database,
+                                    const std::string& category) {
+  Statement rows = database.Prepare(
+      "SELECT label FROM category_parts WHERE category = ?"
+      " ORDER BY label_index");
+  rows.Bind(category);
+  std::vector<std::string> labels;
+  while (rows.Step()) labels.push_back(rows.Text(0));
+  return labels;
+}
+
+void ReadClearances(Database& database, const std::string& space_id,
+                    const std::vector<std::string>& labels, GraspSpace& space) {
+  space.clearances.assign(
+      space.grasps.size(),
+      std::vector<double>(labels.size(),
+                          std::numeric_limits<double>::infinity()));
+  Statement rows = database.Prepare(
+      "SELECT g.position, c.part_label, c.distance FROM grasps g"
+      " JOIN grasp_clearances c ON c.grasp_id = g.id"
+      " WHERE g.grasp_space_id = ? AND g.transfer_id IS NULL");
+  rows.Bind(space_id);
+  while (rows.Step()) {
+    const auto label = std::find(labels.begin(), labels.end(), rows.Text(1));
+    if (label == labels.end()) continue;
+    space.clearances[static_cast<size_t>(rows.Int(0))]
+                    [static_cast<size_t>(label - labels.begin())] =
+        rows.Double(2);
+  }
+}
+
 StoredGrasp MakeLearnedGrasp(const StoredGraspSpace& space, const Grasp& grasp,
                              int index) {
   StoredGrasp stored;
@@ -156,9 +190,15 @@ Result<StoredGraspSpace> Store::InsertGraspSpace(const StoredGraspSpace& record,
     StoredGraspSpace row = record;
     row.id = MakeSpaceId(database, record);
     InsertSpaceRow(database, row, space);
+    const std::vector<std::string> labels = ListLabels(database, row.category);
     for (size_t i = 0; i < space.grasps.size(); ++i) {
-      InsertGrasp(database,
-                  MakeLearnedGrasp(row, space.grasps[i], static_cast<int>(i)));
+      StoredGrasp grasp =
+          MakeLearnedGrasp(row, space.grasps[i], static_cast<int>(i));
+      if (i < space.clearances.size()) {
+        grasp.clearances =
+            NameClearances(space.clearances[i], labels, row.part_label);
+      }
+      InsertGrasp(database, grasp);
     }
     return ReadSpace(database, row.id);
   });
@@ -239,6 +279,7 @@ Result<GraspSpace> Store::ReadGraspSpace(const std::string& id) const {
       grasp.quality = {rows.Double(1), rows.Double(2), rows.Double(3)};
       space.grasps.push_back(std::move(grasp));
     }
+    ReadClearances(database, id, ListLabels(database, record.category), space);
     return space;
   });
 }

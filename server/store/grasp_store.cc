@@ -26,7 +26,7 @@ constexpr char kGraspColumns[] =
     " FROM grasps g CROSS JOIN grasp_spaces s ON s.id = g.grasp_space_id"
     " LEFT JOIN transfers t ON t.id = g.transfer_id ";
 
-StoredGrasp MakeGrasp(const Statement& row) {
+StoredGrasp MakeGrasp(Database& database, const Statement& row) {
   StoredGrasp grasp;
   GraspBlob blob = Unwrap(DecodeGrasp(row.Blob(20)));
   grasp.grasp = std::move(blob.grasp);
@@ -51,6 +51,10 @@ StoredGrasp MakeGrasp(const Statement& row) {
   grasp.engine_version = row.Text(21);
   grasp.parameters_hash = row.Text(22);
   grasp.seed = static_cast<uint64_t>(row.Int(23));
+  Statement gaps = database.Prepare(
+      "SELECT part_label, distance FROM grasp_clearances WHERE grasp_id = ?");
+  gaps.Bind(grasp.id);
+  while (gaps.Step()) grasp.clearances[gaps.Text(0)] = gaps.Double(1);
   return grasp;
 }
 
@@ -116,6 +120,12 @@ Filter MakeGraspFilter(const GraspQuery& query) {
   if (query.min_epsilon) {
     filter.AddValues("g.epsilon >= ?", *query.min_epsilon);
   }
+  for (const std::string& label : query.keep_free) {
+    filter.AddValues(
+        "NOT EXISTS (SELECT 1 FROM grasp_clearances c WHERE c.grasp_id = g.id"
+        " AND c.part_label = ? AND c.distance < ?)",
+        label, query.min_clearance);
+  }
   if (query.verified) {
     filter.Add(*query.verified ? "g.physical IS NOT NULL"
                                : "g.physical IS NULL");
@@ -144,6 +154,11 @@ void store::InsertGrasp(Database& database, const StoredGrasp& grasp) {
             grasp.penetration)
       .BindBlob(EncodeGrasp({grasp.grasp, grasp.targets_O}))
       .Run();
+  for (const auto& [label, distance] : grasp.clearances) {
+    database.Prepare("INSERT INTO grasp_clearances VALUES (?, ?, ?)")
+        .Bind(grasp.id, label, distance)
+        .Run();
+  }
 }
 
 Result<StoredGrasp> Store::FindGrasp(const std::string& id) const {
@@ -154,7 +169,7 @@ Result<StoredGrasp> Store::FindGrasp(const std::string& id) const {
       Throw(ErrorCode::kNotFound, "There is no grasp '" + id + "'.",
             "GET /v1/grasps lists them", "id");
     }
-    return MakeGrasp(row);
+    return MakeGrasp(database, row);
   });
 }
 
@@ -185,7 +200,7 @@ Result<Page<StoredGrasp>> Store::QueryGrasps(const GraspQuery& query) const {
         page.next_cursor = FormatPlace(rule, last);
         break;
       }
-      page.items.push_back(MakeGrasp(rows));
+      page.items.push_back(MakeGrasp(database, rows));
       const StoredGrasp& grasp = page.items.back();
       const int64_t seq = rows.Int(0);
       const double keys[] = {

@@ -132,13 +132,18 @@ void ReadCategoryLists(Database& database, StoredCategory& category) {
       "SELECT label FROM category_parts WHERE category = ?"
       " ORDER BY label_index");
   parts.Bind(category.name);
-  while (parts.Step()) category.parts.push_back({parts.Text(0), {}});
+  while (parts.Step()) category.parts.push_back({parts.Text(0), {}, {}});
   for (CategoryPart& part : category.parts) {
     Statement tasks = database.Prepare(
         "SELECT task, note FROM category_tasks"
         " WHERE category = ? AND label = ?");
     tasks.Bind(category.name, part.label);
     while (tasks.Step()) part.tasks[tasks.Text(0)] = tasks.Text(1);
+    Statement free = database.Prepare(
+        "SELECT task, note FROM category_keep_free"
+        " WHERE category = ? AND label = ?");
+    free.Bind(category.name, part.label);
+    while (free.Step()) part.keep_free[free.Text(0)] = free.Text(1);
   }
   Statement pairs = database.Prepare(
       "SELECT a, b FROM category_adjacency WHERE category = ?"
@@ -182,6 +187,11 @@ void InsertCategoryLists(Database& database, const StoredCategory& category) {
     for (const auto& [task, note] : part.tasks) {
       database.Prepare("INSERT INTO category_tasks VALUES (?, ?, ?, ?)")
           .Bind(category.name, part.label, task, note)
+          .Run();
+    }
+    for (const auto& [task, why] : part.keep_free) {
+      database.Prepare("INSERT INTO category_keep_free VALUES (?, ?, ?, ?)")
+          .Bind(category.name, part.label, task, why)
           .Run();
     }
   }

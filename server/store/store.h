@@ -22,6 +22,8 @@ struct GraspQuery {
   };
   std::string category;
   std::vector<std::string> part_labels;  ///< Any of these.
+  std::vector<std::string> keep_free;    ///< Parts that the hand keeps …
+  double min_clearance{0.0};             ///< … so far off, m.
   std::string hand;
   std::string object_id;
   std::string grasp_space_id;

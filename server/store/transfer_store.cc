@@ -28,6 +28,11 @@ void WriteTransferNotes(Database& database, const StoredTransfer& transfer) {
   for (size_t i = 0; i < transfer.seconds.size(); ++i) {
     write("seconds", i, transfer.seconds[i].first, transfer.seconds[i].second);
   }
+  for (const std::string& label : transfer.keep_free) {
+    database.Prepare("INSERT INTO transfer_keep_free VALUES (?, ?)")
+        .Bind(transfer.id, label)
+        .Run();
+  }
 }
 
 void ReadTransferNotes(Database& database, StoredTransfer& transfer) {
@@ -45,6 +50,10 @@ void ReadTransferNotes(Database& database, StoredTransfer& transfer) {
       transfer.seconds.emplace_back(rows.Text(1), rows.Double(2));
     }
   }
+  Statement labels = database.Prepare(
+      "SELECT part_label FROM transfer_keep_free WHERE transfer_id = ?");
+  labels.Bind(transfer.id);
+  while (labels.Step()) transfer.keep_free.push_back(labels.Text(0));
 }
 
 void InsertTransferRow(Database& database, const StoredTransfer& transfer) {

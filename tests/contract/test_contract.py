@@ -6,6 +6,7 @@ import math
 import socket
 import threading
 import time
+from xml.etree import ElementTree
 
 import numpy
 import pytest
@@ -202,7 +203,7 @@ def test_search_finds_the_most_similar_objects_first(contract, world):
     found = contract.call("searchByShape", 200, body=world["novel_bytes"],
                           query={"role": "example"})["items"]
     assert found[0]["object"]["category"] == "mug"
-    assert found[0]["similarity"] > 0.7
+    assert found[0]["similarity"] > 0.5
     likeness = [item["similarity"] for item in found]
     assert likeness == sorted(likeness, reverse=True)
     assert contract.call("listObjects", 200)["items"] == before
@@ -427,12 +428,15 @@ def test_grasps_in_other_formats(contract, world, answer):
     assert len(lines[0].split(",")) == len(lines[1].split(",")) == 17 + 8
     ros = contract.call("queryGrasps", 200, query={**query, "as": "ros"})
     assert len(ros) == 2 and len(ros[0]["grasp_posture"]["joint_names"]) == 8
-    contract.call("queryGrasps", 501, query={"as": "graspit"})
+    xml = contract.call("queryGrasps", 200, query={**query, "as": "graspit"})
+    robots = ElementTree.fromstring(xml).findall("robot")
+    assert len(robots) == 2
+    assert len(robots[0].findtext("dofValues").split()) >= 1 + 3 * 3
     path = {"id": lines[1].split(",")[0]}
     contract.call("getGrasp", 200, path=path, query={"as": "csv"})
     contract.call("getGrasp", 200, path=path, query={"as": "ros"})
-    contract.call("getGrasp", 501, path=path, query={"as": "graspit"})
-    for as_format in ("csv", "ros"):
+    contract.call("getGrasp", 200, path=path, query={"as": "graspit"})
+    for as_format in ("csv", "ros", "graspit"):
         contract.call("postGrasps", 200,
                       query=transfer_query(**{"as": as_format}),
                       body=world["novel_bytes"])

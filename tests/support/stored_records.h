@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "engine/base/random.h"
@@ -36,8 +37,10 @@ inline StoredCategory MakeMugCategory() {
   StoredCategory category;
   category.name = "mug";
   category.title = "Mugs";
-  category.parts = {{"body", {{"handover", "the other takes the handle"}}},
-                    {"handle", {{"use", "to drink"}, {"pour", ""}}}};
+  category.parts = {{"body", {{"handover", "hold it"}}, {}},
+                    {"handle",
+                     {{"use", "to drink"}, {"pour", ""}},
+                     {{"handover", "the other takes it"}}}};
   category.adjacency = {{0, 1}};
   category.segmentation.max_residual = 0.2;
   return category;
@@ -142,6 +145,8 @@ inline GraspSpace MakeGraspSpace(uint64_t seed, int num_grasps) {
   GraspSpace space;
   for (int i = 0; i < num_grasps; ++i) {
     space.grasps.push_back(MakeGrasp(random));
+    space.clearances.push_back(
+        {0.001 * i, std::numeric_limits<double>::infinity()});
   }
   space.curve = {{2000, 120, 0.81, 0.7}, {2500, 150, 0.9, 0.85}};
   space.support_vectors = {{MakePose(random), MakeJoints(random, 8)},
@@ -184,6 +189,7 @@ inline NewTransfer MakeNewTransfer(const StoredGraspSpace& space,
   transfer.category = "mug";
   transfer.hand = space.hand;
   transfer.part_labels = {novel_part.label};
+  transfer.keep_free = {"body"};
   transfer.parameters = "{\"a\":1}";
   transfer.parameters_hash = MakeContentId(transfer.parameters);
   transfer.seed = 0xFFFFFFFFFFFFFFFF;  // All 64 bits survive.

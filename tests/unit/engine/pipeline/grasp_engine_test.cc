@@ -1,5 +1,7 @@
 #include "engine/grasp_engine.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "engine/hand/hand_shape.h"
@@ -41,8 +43,8 @@ class GripperPipeline : public ::testing::Test {
 
   GraspSpace LearnBox(int threads) const {
     ExecutionContext context;
-    return Learn({gripper_, MakePart(box_E_), box_E_, MakeSmallParameters(), 1,
-                  threads},
+    return Learn({gripper_, MakePart(box_E_), Label(box_E_),
+                  MakeSmallParameters(), 1, threads},
                  context)
         .value();
   }
@@ -53,6 +55,16 @@ class GripperPipeline : public ::testing::Test {
 
   // @param whole_E  What box_E_ is a part of.
   TransferResult TransferFrom(const TriangleMesh& whole_E,
+                              const GraspSpace& space, int threads) const {
+    return Run(MakeRequest(whole_E, space, threads));
+  }
+
+  static TransferResult Run(const TransferRequest& request) {
+    ExecutionContext context;
+    return Transfer(request, context).value();
+  }
+
+  TransferRequest MakeRequest(const TriangleMesh& whole_E,
                               const GraspSpace& space, int threads) const {
     TransferRequest request;
     request.hand = gripper_;
@@ -65,8 +77,7 @@ class GripperPipeline : public ::testing::Test {
     request.sources_per_part = kSources;
     request.parameters = MakeSmallParameters();
     request.threads = threads;
-    ExecutionContext context;
-    return Transfer(request, context).value();
+    return request;
   }
 
   const std::shared_ptr<const HandModel> gripper_ =
@@ -104,6 +115,36 @@ TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
   EXPECT_GE(assembled, static_cast<int>(result.records.size()) / 2);
 }
 
+TEST_F(GripperPipeline, TheHandKeepsOffThePartThatIsKeptFree) {
+  constexpr double kClearance = 0.01;
+  const GraspSpace space = LearnBox(2);
+  TransferRequest request = MakeRequest(box_E_, space, 2);
+  for (int f = 0; f < box_N_.num_triangles(); ++f) {
+    if (box_N_.centroid(f).z() > 0.03) request.novel.face_labels[f] = 1;
+  }
+  const auto count = [&](const TransferResult& result, bool near) {
+    int counted = 0;
+    for (const TransferRecord& record : result.records) {
+      counted += record.assembled.has_value() &&
+                 (record.assembled_clearances[1] < kClearance) == near;
+    }
+    return counted;
+  };
+  const TransferResult free = Run(request);
+  EXPECT_GT(count(free, true), 0);
+  request.keep_free = {1};
+  request.parameters.transfer.min_clearance = kClearance;
+  const TransferResult kept = Run(request);
+  EXPECT_EQ(count(kept, true), 0);
+  EXPECT_EQ(count(kept, false), count(free, false));
+  EXPECT_GT(count(kept, false), 0);
+  EXPECT_TRUE(std::any_of(kept.records.begin(), kept.records.end(),
+                          [](const TransferRecord& record) {
+                            return record.assembly ==
+                                   TransferOutcome::kNotKeptFree;
+                          }));
+}
+
 TEST_F(GripperPipeline, OneAndTwoThreadsGiveTheSameBytes) {
   const GraspSpace one = LearnBox(1);
   const GraspSpace two = LearnBox(2);
@@ -133,12 +174,12 @@ TEST_F(GripperPipeline, TheExamplesQualityOnItsWholeIsZeroWhereItObstructs) {
 TEST_F(GripperPipeline, CancellingEndsLearning) {
   ExecutionContext context;
   context.Cancel();
-  EXPECT_EQ(
-      Learn({gripper_, MakePart(box_E_), box_E_, MakeSmallParameters(), 1, 1},
-            context)
-          .error()
-          .code,
-      ErrorCode::kCancelled);
+  EXPECT_EQ(Learn({gripper_, MakePart(box_E_), Label(box_E_),
+                   MakeSmallParameters(), 1, 1},
+                  context)
+                .error()
+                .code,
+            ErrorCode::kCancelled);
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 
 #include <set>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace graspdb {
 namespace {
 
 TEST(SourceGrasps, TenComeFromEachQuartile) {
-  const std::vector<Grasp> grasps(200);
-  const std::vector<int> drawn = DrawSourceGrasps(grasps, 40, 3);
+  const std::vector<int> drawn = DrawByQuartile(200, 40, 3);
   ASSERT_EQ(drawn.size(), 40u);
   EXPECT_EQ(std::set<int>(drawn.begin(), drawn.end()).size(), 40u);
   for (int quartile = 0; quartile < 4; ++quartile) {
@@ -20,13 +20,23 @@ TEST(SourceGrasps, TenComeFromEachQuartile) {
 }
 
 TEST(SourceGrasps, TheSeedDecides) {
-  const std::vector<Grasp> grasps(200);
-  EXPECT_EQ(DrawSourceGrasps(grasps, 40, 3), DrawSourceGrasps(grasps, 40, 3));
-  EXPECT_NE(DrawSourceGrasps(grasps, 40, 3), DrawSourceGrasps(grasps, 40, 4));
+  EXPECT_EQ(DrawByQuartile(200, 40, 3), DrawByQuartile(200, 40, 3));
+  EXPECT_NE(DrawByQuartile(200, 40, 3), DrawByQuartile(200, 40, 4));
 }
 
 TEST(SourceGrasps, AllAreTakenWhenThereAreFew) {
-  EXPECT_EQ(DrawSourceGrasps(std::vector<Grasp>(7), 40, 1).size(), 7u);
+  EXPECT_EQ(DrawByQuartile(7, 40, 1).size(), 7u);
+}
+
+TEST(SourceGrasps, ThoseTooNearWhatIsKeptFreeAreLeftOut) {
+  GraspSpace space;
+  space.grasps.resize(4);
+  space.clearances = {{0.0, 0.02}, {0.0, 0.005}, {0.0, 0.01}, {0.0, 0.0}};
+  EXPECT_THAT(DrawSourceGrasps(space, {1}, 0.01, 40, 1),
+              testing::ElementsAre(0, 2));
+  EXPECT_THAT(DrawSourceGrasps(space, {}, 0.01, 40, 1),
+              testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(DrawSourceGrasps(space, {0}, 0.01, 40, 1), testing::IsEmpty());
 }
 
 }  // namespace

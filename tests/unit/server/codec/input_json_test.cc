@@ -54,6 +54,12 @@ TEST(CategoryFromJson, NamesTheFieldAtFault) {
   EXPECT_EQ(field_of(R"({"name":"a","parts":[{"label":"b","tasks":{"t":1}}]})"),
             "parts[0].tasks.t");
   EXPECT_EQ(
+      field_of(R"({"name":"a","parts":[{"label":"b","keep_free":{"t":1}}]})"),
+      "parts[0].keep_free.t");
+  EXPECT_EQ(field_of(R"({"name":"a","parts":[{"label":"b","tasks":{"t":""},)"
+                     R"("keep_free":{"t":""}}]})"),
+            "parts[0].keep_free");
+  EXPECT_EQ(
       field_of(
           R"({"name":"a","parts":[{"label":"b"}],"topology":[["b","c"]]})"),
       "topology");

@@ -237,6 +237,7 @@ TEST_F(StoreTest, TransfersComeBackAsTheyWere) {
               ElementsAre(std::pair<std::string, double>("segment", 0.25),
                           std::pair<std::string, double>("replan", 1.5)));
   EXPECT_THAT(found.part_labels, ElementsAre("handle"));
+  EXPECT_THAT(found.keep_free, ElementsAre("body"));
   ASSERT_THAT(found.attempts, SizeIs(9));
   EXPECT_EQ(found.attempts[1].assembly, TransferOutcome::kPalmCollision);
   EXPECT_EQ(found.attempts[1].assembled_grasp_id, "");
@@ -252,6 +253,22 @@ TEST_F(StoreTest, TransfersComeBackAsTheyWere) {
   EXPECT_EQ(grasp.source_grasp_id, found.attempts[2].source_grasp_id);
   EXPECT_EQ(grasp.seed, 0xFFFFFFFFFFFFFFFF);
   EXPECT_EQ(grasp.parameters_hash, transfer.parameters_hash);
+}
+
+TEST_F(StoreTest, QueriesLeaveOutGraspsTooNearWhatIsKeptFree) {
+  const StoredGraspSpace space =
+      AddSpace(AddObject("e", ObjectRole::kExample), 1, 5, 9);
+  GraspQuery query;
+  query.keep_free = {"body"};
+  query.min_clearance = 0.005;
+  const auto found = store_->QueryGrasps(query).value().items;
+  EXPECT_THAT(found, SizeIs(4));  // 5, 6, 7 and 8 mm.
+  for (const StoredGrasp& grasp : found) {
+    EXPECT_GE(grasp.clearances.at("body"), 0.005);
+    EXPECT_THAT(grasp.clearances, SizeIs(1));
+  }
+  query.keep_free = {"lid"};  // No grasp's object has one.
+  EXPECT_THAT(store_->QueryGrasps(query).value().items, SizeIs(9));
 }
 
 TEST_F(StoreTest, ATransferIsStoredOnce) {
