@@ -5,6 +5,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <string_view>
@@ -29,6 +30,9 @@
 
 namespace graspdb {
 namespace {
+
+// Of a coordinate, in diagonals of the mesh.
+constexpr double kMostRounding = 1e-4;
 
 std::string_view ToText(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -305,7 +309,19 @@ Result<TriangleMesh> DecodeContent(const MeshContent& content,
   if (vertex.size() != soup.vertices().size()) {
     return MakeFormatError(format, "its faces do not match its vertices");
   }
-  return MakeMesh(soup, vertex);
+  TriangleMesh mesh = MakeMesh(soup, vertex);
+  const double farthest = std::max(mesh.box_min().cwiseAbs().maxCoeff(),
+                                   mesh.box_max().cwiseAbs().maxCoeff());
+  // assimp keeps single-precision coordinates.
+  if (mesh.diagonal() > 0.0 &&
+      farthest * std::numeric_limits<float>::epsilon() >
+          kMostRounding * mesh.diagonal()) {
+    return MakeFormatError(
+        format,
+        "it lies so far from its origin that its shape is lost in "
+        "rounding; move it there");
+  }
+  return mesh;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
@@ -56,6 +57,16 @@ double CalcMedian(std::vector<double> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// Each position once, where it comes first.
+Points DropCopies(const Points& points) {
+  std::set<std::array<double, 3>> seen;
+  Points kept;
+  for (const Eigen::Vector3d& p : points) {
+    if (seen.insert({p.x(), p.y(), p.z()}).second) kept.push_back(p);
+  }
+  return kept;
 }
 
 // The mean distance from each point to its nearest neighbours.
@@ -390,17 +401,18 @@ TriangleMesh DrawBack(const TriangleMesh& wrap, const Points& points,
 
 }  // namespace
 
-Result<ReconstructedSurface> ReconstructSurface(const Points& points_O) {
+Result<ReconstructedSurface> ReconstructSurface(const Points& given_O) {
+  const Points points_O = DropCopies(given_O);
   if (std::ssize(points_O) < kFewestPoints) {
     return MakeError(
-        fmt::format("a cloud of {} points is too thin; at least "
+        fmt::format("a cloud of {} different points is too thin; at least "
                     "{} are needed",
                     points_O.size(), kFewestPoints));
   }
   ReconstructedSurface result;
   const Points kept = DropOutliers(points_O);
   CloudReport& report = result.report;
-  report.num_points = static_cast<int>(points_O.size());
+  report.num_points = static_cast<int>(given_O.size());
   report.num_outliers = static_cast<int>(points_O.size() - kept.size());
   if (std::ssize(kept) < kFewestPoints) {
     return MakeError(

@@ -145,9 +145,7 @@ class Judge {
       const double ratio = novel.shares[label] / example.shares[label];
       const std::string part = "the " + vocabulary_.labels[label];
       if (ratio == 0.0) {
-        Fail(partial ? SegmentationVerdict::kUnsure
-                     : SegmentationVerdict::kForeign,
-             part + " was not found");
+        Fail(SegmentationVerdict::kUnsure, part + " was not found");
       } else if (!partial && (ratio < parameters_.min_area_ratio ||
                               ratio > parameters_.max_area_ratio)) {
         const bool is_narrow = ratio > 0.5 * parameters_.min_area_ratio &&

@@ -74,7 +74,9 @@ class Program {
             const std::function<std::string(const std::string&)>& report) {
     const std::string text = options_.json ? json + "\n" : report(json);
     std::fwrite(text.data(), 1, text.size(), stdout);
-    return std::fflush(stdout) == 0 ? kSuccess : kUserError;
+    if (std::fflush(stdout) == 0) return kSuccess;
+    fmt::print(stderr, "graspdb: Standard output cannot be written.\n");
+    return kUserError;
   }
 
  private:
@@ -249,6 +251,7 @@ void CommandLine::AddServe() {
       ->capture_default_str();
   command->callback([this, config, wait] {
     action_ = [config, wait](Program& program) -> Result<int> {
+      GRASPDB_TRY_VOID(CheckAddress(*config));
       GRASPDB_TRY(service, program.OpenService(Store::OpenMode::kOpenOrCreate));
       config->default_wait = std::chrono::seconds(*wait);
       GRASPDB_TRY(confinement, service->CheckDecoder());

@@ -1,10 +1,10 @@
 #include "server/cli/populate.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <iterator>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -16,6 +16,9 @@ namespace graspdb {
 namespace {
 
 namespace fs = std::filesystem;
+
+// As much as a server takes, see ServiceOptions::max_mesh_bytes.
+const int64_t kMostFileBytes = ServiceOptions().max_mesh_bytes;
 
 // The folders in a folder that hold a file of that name, in order.
 std::vector<fs::path> FindFoldersWith(const fs::path& folder,
@@ -127,24 +130,40 @@ Result<std::vector<FolderExample>> ImportCategory(Service& service,
   return examples;
 }
 
+Error MakeUnreadable(const std::string& name) {
+  return Error{ErrorCode::kInvalidArgument, name + " cannot be read.",
+               "check its name and permissions, or use - for standard input"};
+}
+
+Result<std::string> ReadBytes(std::FILE* file, const std::string& name) {
+  std::string bytes;
+  std::array<char, 65536> chunk{};
+  while (const size_t count = std::fread(chunk.data(), 1, chunk.size(), file)) {
+    bytes.append(chunk.data(), count);
+    if (std::ssize(bytes) > kMostFileBytes) {
+      return Error{
+          ErrorCode::kTooLarge,
+          fmt::format("{} has more than {} bytes.", name, kMostFileBytes),
+          "reduce it"};
+    }
+  }
+  if (std::ferror(file) != 0) return MakeUnreadable(name);
+  return bytes;
+}
+
 }  // namespace
 
 Result<std::string> ReadFileBytes(const std::string& path) {
-  if (path == "-") {
-    return std::string(std::istreambuf_iterator<char>(std::cin), {});
-  }
+  if (path == "-") return ReadBytes(stdin, "standard input");
   std::error_code code;
   if (fs::is_directory(path, code)) {
     return Error{ErrorCode::kInvalidArgument, path + " is a folder.",
                  "name a file in it"};
   }
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(file), {});
-  if (!file.is_open() || file.bad()) {
-    return Error{ErrorCode::kInvalidArgument, path + " cannot be read.",
-                 "check its name and permissions, or use - for standard input"};
-  }
-  return bytes;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+      std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) return MakeUnreadable(path);
+  return ReadBytes(file.get(), path);
 }
 
 Result<std::string> Populate(Service& service, const PopulateOrder& order,

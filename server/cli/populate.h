@@ -27,7 +27,8 @@ Result<std::string> Populate(Service& service, const PopulateOrder& order,
                              Progress& progress);
 
 /** A file's bytes; "-" reads standard input.
- @retval kInvalidArgument when it cannot be read. */
+ @retval kInvalidArgument when it cannot be read.
+ @retval kTooLarge for more than a server takes. */
 Result<std::string> ReadFileBytes(const std::string& path);
 
 }  // namespace graspdb

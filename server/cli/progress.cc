@@ -13,6 +13,7 @@ namespace {
 constexpr int kBarWidth = 24;
 constexpr std::chrono::milliseconds kRedraw{100};  // Of a bar.
 constexpr std::chrono::seconds kRepeat{10};        // Of a line in a pipe.
+constexpr std::chrono::seconds kQuietStart{1};     // No line in a pipe before.
 
 }  // namespace
 
@@ -27,6 +28,7 @@ void Progress::Report(const std::string& stage, double share) {
   if (quiet_) return;
   const auto now = Clock::now();
   const bool new_stage = stage != last_stage_;
+  if (!terminal_ && now - started_ < kQuietStart) return;
   if (terminal_) {
     if (now - last_drawn_ < kRedraw && share < 1.0) return;
   } else if (!new_stage && now - last_drawn_ < kRepeat) {

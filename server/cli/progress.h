@@ -6,7 +6,8 @@
 namespace graspdb {
 
 /** Tells a person on standard error how far a long work is: a bar that moves on
- a terminal, a line per stage in a pipe, nothing when it is quiet. */
+ a terminal, a line per stage in a pipe after the first second, nothing when it
+ is quiet. */
 class Progress {
  public:
   explicit Progress(bool quiet);
@@ -28,6 +29,7 @@ class Progress {
   bool terminal_;
   bool bar_shown_{false};
   std::string last_stage_;
+  Clock::time_point started_{Clock::now()};
   Clock::time_point last_drawn_{};
 };
 

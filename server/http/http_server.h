@@ -20,6 +20,10 @@ struct ServerConfig;
  @returns the exit status: 0, or 2 when it cannot listen. */
 int RunServer(Service& service, const ServerConfig& config);
 
+/** Whether the configured address can be listened on, asked before a database
+ is made for nothing. @retval kConflict in words when it cannot. */
+Result<void> CheckAddress(const ServerConfig& config);
+
 struct HttpServerOptions {
   HttpLimits limits;
   size_t threads{64};  ///< Connections served at the same time.

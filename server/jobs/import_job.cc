@@ -70,9 +70,14 @@ Result<SegmentedObject> SegmentNewObject(const Store& store,
 }
 
 // An example must show its parts beyond doubt.
-Result<void> CheckExample(const SegmentedObject& segmented) {
-  if (segmented.record.verdict != ToString(SegmentationVerdict::kForeign) &&
-      !segmented.parts.empty()) {
+Result<void> CheckExample(const Store& store,
+                          const SegmentedObject& segmented) {
+  GRASPDB_TRY(category, store.FindCategory(segmented.category));
+  const bool by_hand = segmented.record.method == "labels";
+  if (by_hand ? !segmented.parts.empty()
+              : segmented.parts.size() == category.parts.size() &&
+                    segmented.record.verdict !=
+                        ToString(SegmentationVerdict::kForeign)) {
     return {};
   }
   return Error{ErrorCode::kNotInCategory,
@@ -86,7 +91,7 @@ Result<ImportResult> StoreSegmentation(Store& store, const StoredObject& object,
                                        const SegmentedObject& segmented,
                                        bool cascade) {
   if (object.role == ObjectRole::kExample) {
-    GRASPDB_TRY_VOID(CheckExample(segmented));
+    GRASPDB_TRY_VOID(CheckExample(store, segmented));
   }
   GRASPDB_TRY(stored,
               store.ReplaceParts(object.id, segmented.category,
@@ -120,6 +125,8 @@ Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
   ImportOrder checked = order;
   if (checked.units.empty()) {
     checked.units = HasOwnUnit(order) ? kFileUnits : "m";
+  } else if (checked.units == kFileUnits && HasOwnUnit(order)) {
+    // It was filled in before.
   } else if (const auto units = ParseUnits(checked.units); !units) {
     return units.error();
   }
@@ -129,8 +136,11 @@ Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
     }
   }
   if (order.bytes.empty()) {
-    return Error{ErrorCode::kUnusableInput, "The mesh is empty.", kFormatHint,
-                 "mesh"};
+    const auto format = ParseMeshFormat(order.format);
+    return Error{ErrorCode::kUnusableInput,
+                 format ? fmt::format("The {} file is empty.", GetName(*format))
+                        : "The mesh is empty.",
+                 kFormatHint, "mesh"};
   }
   if (std::ssize(order.bytes) > options_.max_mesh_bytes) {
     return Error{ErrorCode::kTooLarge,
@@ -185,7 +195,7 @@ Result<ImportResult> Service::ImportNewObject(const ImportOrder& order,
     GRASPDB_TRY(segmented,
                 SegmentNewObject(*store_, order, object.meshes, context));
     if (order.role == ObjectRole::kExample) {
-      GRASPDB_TRY_VOID(CheckExample(segmented));
+      GRASPDB_TRY_VOID(CheckExample(*store_, segmented));
     }
     object.record.category = segmented.category;
     object.record.segmentation = std::move(segmented.record);
@@ -194,10 +204,11 @@ Result<ImportResult> Service::ImportNewObject(const ImportOrder& order,
     object.solids = std::move(segmented.solids);
   }
   context.ReportProgress("store", 0.9);
-  GRASPDB_TRY(stored, store_->InsertObject(object));
+  bool created = false;
+  GRASPDB_TRY(stored, store_->InsertObject(object, &created));
   GRASPDB_TRY(parts, store_->ListParts(stored.id));
   context.ReportProgress("store", 1.0);
-  return ImportResult{stored, parts, true};
+  return ImportResult{stored, parts, created};
 }
 
 Result<ImportResult> Service::Resegment(const SegmentOrder& order,

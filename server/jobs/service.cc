@@ -180,6 +180,19 @@ Result<Page<StoredGrasp>> Service::QueryGrasps(
   return store_->QueryGrasps(query);
 }
 
+Result<std::shared_ptr<void>> Service::HoldKey(const std::string& key) {
+  const std::lock_guard lock(keys_mutex_);
+  if (!held_keys_.insert(key).second) {
+    return Error{ErrorCode::kConflict,
+                 "A request with this Idempotency-Key is being answered.",
+                 "send it again in a moment", "Idempotency-Key"};
+  }
+  return std::shared_ptr<void>(nullptr, [this, key](void*) {
+    const std::lock_guard release(keys_mutex_);
+    held_keys_.erase(key);
+  });
+}
+
 // ---- Jobs -------------------------------------------------------------------
 
 Result<StoredJob> Service::SubmitImport(const ImportOrder& order,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,11 @@ class Service {
    has finished stays as it is. */
   Result<StoredJob> CancelJob(const std::string& id);
 
+  /** Holds an Idempotency-Key until the answer is dropped, so that of many
+   requests at once under one key one has an effect.
+   @retval kConflict while another holds it. */
+  Result<std::shared_ptr<void>> HoldKey(const std::string& key);
+
   /** Queues what a dead process left running and starts the workers: one for
    all that learns, one for the rest, so that no transfer waits for minutes.
    Only a server calls this. */
@@ -168,6 +174,8 @@ class Service {
   mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;
   mutable std::mutex descriptors_mutex_;
   mutable std::map<std::string, ShapeDescriptor> descriptors_;  // By object.
+  std::mutex keys_mutex_;
+  std::set<std::string> held_keys_;
   std::unique_ptr<JobRunner> runner_;
 };
 

@@ -43,7 +43,8 @@ struct Plan {
   /** For each novel part what was learned for its label, if it is wanted. */
   std::vector<std::optional<StoredGraspSpace>> spaces;
   std::vector<std::string> labels;     ///< Of the category's parts.
-  std::vector<std::string> keep_free;  ///< Of them, what the task keeps free.
+  std::vector<std::string> wanted;     ///< Of them, what grasps are for …
+  std::vector<std::string> keep_free;  ///< … and what the task keeps free.
   std::vector<std::string> warnings;
 };
 
@@ -150,6 +151,7 @@ Result<Plan> MakePlan(const Store& store, const TransferOrder& order,
   plan.labels = MakeVocabulary(category).labels;
   plan.keep_free = FindPartsKeptFree(category, order.task);
   GRASPDB_TRY(wanted, FindWantedLabels(order, category));
+  plan.wanted = wanted;
   int found = 0;
   for (const StoredPart& part : plan.novel_parts) {
     plan.spaces.emplace_back();
@@ -208,7 +210,8 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
     content += " from " + plan.spaces[i]->id;
     row.part_labels.push_back(plan.novel_parts[i].label);
   }
-  for (const std::string& label : row.keep_free) content += " free " + label;
+  for (const std::string& label : plan.wanted) content += " wants " + label;
+  for (const std::string& label : row.keep_free) content += " frees " + label;
   row.id = MakeContentId(content);
   return row;
 }

@@ -24,7 +24,7 @@ Result<HttpResponse> ListCategories(const Service& service,
 Result<HttpResponse> PostCategory(Service& service,
                                   const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
-  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     GRASPDB_TRY(given, CategoryFromJson(request.body));
     GRASPDB_TRY(stored, service.AddCategory(given));
     HttpResponse response = MakeJsonResponse(201, ToJson(stored));
@@ -79,7 +79,7 @@ Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
     GRASPDB_TRY(face_labels, FaceLabelsFromJson(*labels));
     order.face_labels = face_labels;
   }
-  GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitImport(order, idempotency.key()));
   return AnswerJob(service, request, std::chrono::seconds(0), job, idempotency,
                    [&](const StoredJob& done) -> Result<HttpResponse> {

@@ -19,6 +19,10 @@ Result<HttpResponse> ListGraspSpaces(const Service& service,
   if (!filter.category.empty()) {
     GRASPDB_TRY_VOID(Check(store.FindCategory(filter.category)));
   }
+  if (!filter.part_label.empty()) {
+    GRASPDB_TRY_VOID(
+        CheckPartLabels(store, filter.category, {filter.part_label}));
+  }
   if (!filter.hand.empty())
     GRASPDB_TRY_VOID(Check(store.FindHand(filter.hand)));
   if (!filter.object_id.empty()) {

@@ -109,15 +109,6 @@ Result<GraspSearch> ReadSearch(QueryReader& query) {
   return search;
 }
 
-Error MakeUnknownLabel(const std::string& field, const std::string& name,
-                       const StoredCategory& category,
-                       const std::set<std::string>& known) {
-  return {
-      ErrorCode::kNotFound,
-      fmt::format("The category {} has no {} {}.", category.name, field, name),
-      fmt::format("Known are {}.", fmt::join(known, ", ")), field};
-}
-
 /** Whether what the search names exists. Of parts and tasks only a category
  knows. */
 Result<void> CheckNames(const Store& store, const GraspSearch& search) {
@@ -128,21 +119,18 @@ Result<void> CheckNames(const Store& store, const GraspSearch& search) {
   if (!wanted.transfer_id.empty()) {
     GRASPDB_TRY_VOID(Check(store.FindTransfer(wanted.transfer_id)));
   }
+  GRASPDB_TRY_VOID(CheckPartLabels(store, wanted.category, wanted.part_labels));
   if (wanted.category.empty()) return {};
   GRASPDB_TRY(category, store.FindCategory(wanted.category));
-  std::set<std::string> labels;
   std::set<std::string> tasks;
   for (const CategoryPart& part : category.parts) {
-    labels.insert(part.label);
     for (const auto& [task, note] : part.tasks) tasks.insert(task);
   }
-  for (const std::string& label : wanted.part_labels) {
-    if (!labels.contains(label)) {
-      return MakeUnknownLabel("part", label, category, labels);
-    }
-  }
   if (!search.task.empty() && !tasks.contains(search.task)) {
-    return MakeUnknownLabel("task", search.task, category, tasks);
+    return Error{ErrorCode::kNotFound,
+                 fmt::format("The category {} has no task {}.", category.name,
+                             search.task),
+                 fmt::format("Known are {}.", fmt::join(tasks, ", ")), "task"};
   }
   return {};
 }
@@ -286,7 +274,7 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
   GRASPDB_TRY(order, ReadTransferOrder(request, query));
   const bool has_mesh = !request.body.empty() || !request.files.empty();
   GRASPDB_TRY_VOID(CheckTransferOrder(order, has_mesh));
-  GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitTransfer(order, idempotency.key()));
   return AnswerJob(
       service, request, options.default_wait, job, idempotency,

@@ -55,7 +55,7 @@ Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
     GRASPDB_TRY(face_labels, FaceLabelsFromJson(*labels));
     order.face_labels = face_labels;
   }
-  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
     GRASPDB_TRY(imported, service.ImportObject(order, context.context()));
     HttpResponse response = MakeJsonResponse(
@@ -84,7 +84,7 @@ Result<HttpResponse> SearchByShape(Service& service,
     const auto category = service.store().FindCategory(shape.category);
     if (!category) return category.error();
   }
-  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
     GRASPDB_TRY(found,
                 service.SearchByShape(**upload, shape, context.context()));
@@ -188,7 +188,7 @@ Result<HttpResponse> PostSegmentation(Service& service,
   GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
   order.cascade = cascade;
-  return AnswerOnce(request, service.store(), [&]() -> Result<HttpResponse> {
+  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
     GRASPDB_TRY(done, service.Resegment(order, context.context()));
     return MakeJsonResponse(200, ToJson(done.object, done.parts));
@@ -200,7 +200,7 @@ Result<HttpResponse> PostGraspSpaces(Service& service,
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(order, LearnOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
-  GRASPDB_TRY(idempotency, Idempotency::Read(request, service.store()));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitLearn(order, idempotency.key()));
   return AnswerJob(
       service, request, std::chrono::seconds(0), job, idempotency,

@@ -72,6 +72,13 @@ int Fail(const Error& error) {
 
 }  // namespace
 
+Result<void> CheckAddress(const ServerConfig& config) {
+  HttpServer probe(Router{}, HttpServerOptions{});
+  const auto port = probe.Bind(config.host, config.port);
+  if (!port) return port.error();
+  return {};
+}
+
 int RunServer(Service& service, const ServerConfig& config) {
   HttpServerOptions options;
   options.limits.max_upload_bytes = config.max_upload_bytes;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <thread>
 
 #include <fmt/format.h>
@@ -158,8 +159,9 @@ std::chrono::seconds ReadPreferredWait(const HttpRequest& request,
 }
 
 Result<Idempotency> Idempotency::Read(const HttpRequest& request,
-                                      Store& store) {
+                                      Service& service) {
   Idempotency read;
+  Store& store = service.store();
   read.store_ = &store;
   read.key_ = request.FindHeader("idempotency-key");
   if (!request.headers.contains("idempotency-key")) return read;
@@ -169,6 +171,8 @@ Result<Idempotency> Idempotency::Read(const HttpRequest& request,
                  "Idempotency-Key"};
   }
   read.request_sha256_ = CalcRequestSha256(request);
+  GRASPDB_TRY(hold, service.HoldKey(read.key_));
+  read.hold_ = std::move(hold);
   GRASPDB_TRY(reply, store.FindReply(read.key_));
   if (!reply) return read;
   if (reply->request_sha256 != read.request_sha256_) {
@@ -187,15 +191,46 @@ Result<Idempotency> Idempotency::Read(const HttpRequest& request,
 }
 
 Result<void> Idempotency::Keep(const HttpResponse& response) {
+  const std::shared_ptr<void> hold = std::move(hold_);
   if (key_.empty() || earlier_) return {};
   return store_->InsertReply({key_, request_sha256_, response.status,
                               response.headers, response.body});
 }
 
+Result<void> CheckPartLabels(const Store& store, const std::string& category,
+                             const std::vector<std::string>& labels) {
+  if (labels.empty()) return {};
+  std::set<std::string> known;
+  const auto add = [&known](const StoredCategory& stored) {
+    for (const CategoryPart& part : stored.parts) known.insert(part.label);
+  };
+  if (!category.empty()) {
+    GRASPDB_TRY(stored, store.FindCategory(category));
+    add(stored);
+  } else {
+    PageRequest page{1000, ""};
+    do {
+      GRASPDB_TRY(categories, store.ListCategories(page));
+      for (const StoredCategory& stored : categories.items) add(stored);
+      page.cursor = categories.next_cursor;
+    } while (!page.cursor.empty());
+  }
+  for (const std::string& label : labels) {
+    if (known.contains(label)) continue;
+    return Error{
+        ErrorCode::kNotFound,
+        category.empty()
+            ? fmt::format("No category has a part {}.", label)
+            : fmt::format("The category {} has no part {}.", category, label),
+        fmt::format("Known are {}.", fmt::join(known, ", ")), "part"};
+  }
+  return {};
+}
+
 Result<HttpResponse> AnswerOnce(
-    const HttpRequest& request, Store& store,
+    const HttpRequest& request, Service& service,
     const std::function<Result<HttpResponse>()>& handler) {
-  GRASPDB_TRY(idempotency, Idempotency::Read(request, store));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   if (idempotency.earlier()) return *idempotency.earlier();
   GRASPDB_TRY(response, handler());
   GRASPDB_TRY_VOID(idempotency.Keep(response));

@@ -80,9 +80,10 @@ std::chrono::seconds ReadPreferredWait(const HttpRequest& request,
 /** The Idempotency-Key of a POST and what was answered under it before. */
 class Idempotency {
  public:
-  /** @retval kInvalidArgument when the key is malformed.
-   @retval kConflict when it was used for another request. */
-  static Result<Idempotency> Read(const HttpRequest& request, Store& store);
+  /** Holds the key until Keep() or the end.
+   @retval kInvalidArgument when the key is malformed.
+   @retval kConflict when it was used for another request, or is in use. */
+  static Result<Idempotency> Read(const HttpRequest& request, Service& service);
 
   /** Empty when the request has none. */
   const std::string& key() const { return key_; }
@@ -92,6 +93,7 @@ class Idempotency {
 
  private:
   Store* store_{nullptr};
+  std::shared_ptr<void> hold_;
   std::string key_;
   std::string request_sha256_;
   std::optional<HttpResponse> earlier_;
@@ -108,10 +110,15 @@ Result<HttpResponse> AnswerJob(
     Idempotency& idempotency,
     const std::function<Result<HttpResponse>(const StoredJob&)>& answer);
 
+/** Refuses labels that the category, or without one any category, has not.
+ @retval kNotFound naming the known ones. */
+Result<void> CheckPartLabels(const Store& store, const std::string& category,
+                             const std::vector<std::string>& labels);
+
 /** Runs `handler`, unless its answer to the same request under the same
  Idempotency-Key is known: then that. Answers of failures are not kept. */
 Result<HttpResponse> AnswerOnce(
-    const HttpRequest& request, Store& store,
+    const HttpRequest& request, Service& service,
     const std::function<Result<HttpResponse>()>& handler);
 
 /** An execution that ends when the server stops. */

@@ -181,6 +181,13 @@ Database::Database(const std::string& path, Mode mode) {
     sqlite3_close_v2(handle_);
     throw StorageFailure(error);
   }
+  // Without the right to write SQLite opens for reading, silently.
+  if (mode == Mode::kReadWrite && sqlite3_db_readonly(handle_, "main") == 1) {
+    sqlite3_close_v2(handle_);
+    throw StorageFailure(Error{ErrorCode::kStorage,
+                               "The database " + path + " cannot be written.",
+                               FindHint(SQLITE_READONLY)});
+  }
   sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -227,6 +234,13 @@ bool Database::InTransaction() const {
 }
 
 void Database::Fail(int code) const {
+  // What is checked before a write may be gone when it comes.
+  if (code == SQLITE_CONSTRAINT_FOREIGNKEY) {
+    throw StorageFailure(
+        Error{ErrorCode::kConflict,
+              "What this belongs to was deleted in the meantime.",
+              "send the request again"});
+  }
   throw StorageFailure(Error{
       ErrorCode::kStorage,
       std::string("The database failed: ") + sqlite3_errmsg(handle_) + ".",

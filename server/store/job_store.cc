@@ -5,6 +5,7 @@
 namespace graspdb {
 namespace {
 
+using store::CheckIdCursor;
 using store::CheckPage;
 using store::MakePage;
 using store::Throw;
@@ -100,6 +101,7 @@ Result<Page<StoredJob>> Store::ListJobs(std::optional<JobState> state,
                                         const PageRequest& page) const {
   return impl_->Read([&](Database& database) {
     CheckPage(page);
+    CheckIdCursor(page);
     std::string where = "WHERE (?1 = '' OR id < ?1)";
     if (state) where += " AND state = ?3";
     Statement rows =

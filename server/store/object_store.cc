@@ -8,6 +8,7 @@
 namespace graspdb {
 namespace {
 
+using store::CheckIdCursor;
 using store::CheckPage;
 using store::MakePage;
 using store::ReadObject;
@@ -374,13 +375,16 @@ void CheckObjects(Database& database, CheckReport& report) {
 
 }  // namespace store
 
-Result<StoredObject> Store::InsertObject(const NewObject& object) {
+Result<StoredObject> Store::InsertObject(const NewObject& object,
+                                         bool* created) {
   return impl_->Write([&](Database& database) {
+    if (created != nullptr) *created = false;
     StoredObject record = object.record;
     if (auto known = FindByContent(database, record.sha256, record.units,
                                    record.role, record.category)) {
       return *known;
     }
+    if (created != nullptr) *created = true;
     record.id = MakeUuid();
     record.created_at = FormatNow();
     InsertObjectRow(database, record);
@@ -412,6 +416,7 @@ Result<Page<StoredObject>> Store::ListObjects(const ObjectFilter& filter,
                                               const PageRequest& page) const {
   return impl_->Read([&](Database& database) {
     CheckPage(page);
+    CheckIdCursor(page);
     std::string where = "WHERE id > ?";
     if (!filter.category.empty()) where += " AND category = ?";
     if (filter.role) where += " AND role = ?";

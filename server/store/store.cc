@@ -23,6 +23,24 @@ void CheckPage(const PageRequest& page) {
   }
 }
 
+namespace {
+
+void CheckCursorLetters(const PageRequest& page, const char* letters) {
+  if (page.cursor.find_first_not_of(letters) == std::string::npos) return;
+  Throw(ErrorCode::kInvalidArgument, "The cursor is not of this list.",
+        "use next_cursor of the page before", "cursor");
+}
+
+}  // namespace
+
+void CheckIdCursor(const PageRequest& page) {
+  CheckCursorLetters(page, "0123456789abcdef-");
+}
+
+void CheckNameCursor(const PageRequest& page) {
+  CheckCursorLetters(page, "0123456789abcdefghijklmnopqrstuvwxyz_-");
+}
+
 void InsertParameterSet(Database& database, const std::string& hash,
                         const std::string& json) {
   database.Prepare("INSERT OR IGNORE INTO parameter_sets VALUES (?, ?)")

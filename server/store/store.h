@@ -95,8 +95,10 @@ class Store {
 
   // ---- Objects and parts ----------------------------------------------------
   /** Stores all or nothing. The same bytes, units, role and category a second
-   time answer with the object already stored and store nothing. */
-  Result<StoredObject> InsertObject(const NewObject& object);
+   time answer with the object already stored and store nothing.
+   @param[out] created  Whether it is a new one. */
+  Result<StoredObject> InsertObject(const NewObject& object,
+                                    bool* created = nullptr);
   Result<StoredObject> FindObject(const std::string& id) const;
   Result<std::optional<StoredObject>> FindObjectByContent(
       const std::string& sha256, const std::string& units, ObjectRole role,

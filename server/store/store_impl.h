@@ -73,6 +73,10 @@ T Unwrap(Result<T> result) {
 
 /** @throws kInvalidArgument unless the limit lies in 1..1000. */
 void CheckPage(const PageRequest& page);
+/** Whether the cursor may be one of a list by UUID, or by name.
+ @throws StorageFailure kInvalidArgument when it is not. */
+void CheckIdCursor(const PageRequest& page);
+void CheckNameCursor(const PageRequest& page);
 
 /** Cuts a list that was read with one item more than asked for.
  @param cursor_of  Gives the cursor that continues after an item. */
@@ -93,6 +97,7 @@ template <class F>
 auto ListByName(Database& database, const std::string& table,
                 const PageRequest& page, F&& read) {
   CheckPage(page);
+  CheckNameCursor(page);
   std::vector<std::string> names;
   Statement rows = database.Prepare("SELECT name FROM " + table +
                                     " WHERE name > ? ORDER BY name LIMIT ?");

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import re
+import resource
 import shutil
 import socket
 import sqlite3
@@ -285,3 +286,71 @@ def test_no_file_is_opened_that_a_mesh_refers_to(binary, database, tmp_path):
             assert f'"{mesh}"' in calls and "graspdb-decode" in calls
             assert "tell-nobody" not in calls
             assert "AF_INET" not in calls and "connect(" not in calls
+
+
+
+
+def test_a_taken_port_makes_no_database(binary, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as owner:
+        port = str(owner.getsockname()[1])
+        subprocess.run([binary, "serve", "--db", tmp_path / "a.db", "--port",
+                        port], capture_output=True, timeout=60)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_taken_port_is_one_line(binary, database):
+    with socket.create_server(("127.0.0.1", 0)) as owner:
+        port = str(owner.getsockname()[1])
+        complain(binary, ["serve", "--db", database, "--port", port],
+                 hint=False)
+
+
+@pytest.mark.parametrize("command", ["serve", "segment"])
+def test_a_database_that_may_not_be_written_is_one_line(
+        binary, database, tmp_path, command):
+    os.chmod(database, 0o444)
+    before = snapshot(tmp_path)
+    mesh = ROOT / "data" / "mug" / "square.obj"
+    words = [str(mesh) if word.endswith("latte.obj") else word
+             for word in COMMANDS[command]]
+    complain(binary, [*words, "--db", database], prefix=HUMBLE,
+             hint=False)
+    assert snapshot(tmp_path) == before
+
+
+def test_a_file_that_fails_while_it_is_read_is_no_bug(binary, database):
+    complain(binary, ["segment", "/proc/self/mem", "--category", "mug",
+                      "--db", database])
+
+
+@pytest.mark.parametrize("kind", ["endless", "sparse"])
+def test_a_file_over_the_limit_is_not_read_past_it(
+        binary, database, tmp_path, kind):
+    path = "/dev/zero"
+    if kind == "sparse":
+        path = tmp_path / "sparse.obj"
+        path.touch()
+        os.truncate(path, 8 << 30)
+    result = subprocess.run(
+        [binary, "segment", path, "--category", "mug", "--db", database],
+        capture_output=True, text=True, timeout=60, preexec_fn=lambda:
+        resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30)))
+    assert result.returncode == 2
+    assert re.fullmatch(r"graspdb: .*67108864.*\n", result.stderr), (
+        result.stderr)
+
+
+def test_output_that_cannot_be_written_is_said(binary, database):
+    with open("/dev/full", "wb") as full:
+        result = subprocess.run([binary, "query", "--db", database],
+                                stdout=full, stderr=subprocess.PIPE, timeout=60)
+    assert result.returncode == 2
+    assert result.stderr.startswith(b"graspdb: ")
+
+
+def test_standard_input_that_is_no_mesh_is_one_line(
+        binary, database, tmp_path):
+    before = snapshot(tmp_path)
+    complain(binary, ["segment", "-", "--category", "mug", "--db", database],
+             stdin=b"hello\n")
+    assert snapshot(tmp_path) == before

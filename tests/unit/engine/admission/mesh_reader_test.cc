@@ -158,6 +158,17 @@ TEST(MeshReader, TakesBinaryValuesForNoWhiteSpace) {
   }
 }
 
+TEST(MeshReader, RefusesAMeshWhoseShapeIsLostInRounding) {
+  const auto tetrahedron_at = [](const std::string& x, const std::string& x1) {
+    return ReadObj("v " + x + " 0 0\nv " + x1 + " 0 0\nv " + x + " 0.1 0\nv " +
+                   x + " 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  };
+  EXPECT_TRUE(tetrahedron_at("10", "10.1"));
+  const auto far = tetrahedron_at("1000", "1000.1");
+  ASSERT_FALSE(far);
+  EXPECT_THAT(far.error().message, testing::HasSubstr("rounding"));
+}
+
 TEST(MeshReader, MultipliesByTheUnit) {
   const auto mesh = ReadMesh(MakeObj(MakeTetrahedron()), MeshFormat::kObj,
                              0.001, MeshLimits{});
