@@ -129,7 +129,11 @@ double CalcMilliseconds(Clock::time_point begin) {
 struct HttpServer::Impl : httplib::Server {
   Impl(Router router_in, HttpServerOptions options_in)
       : router(std::move(router_in)), options(std::move(options_in)) {}
-  ~Impl() override { close(stop_fd); }
+  ~Impl() override {
+    close(stop_fd);
+    // The library closes the socket at the end of serving, and only then.
+    if (bound_unserved) close(svr_sock_);
+  }
 
   // The library's one virtual step per connection.
   bool process_and_close_socket(socket_t socket) override;
@@ -154,6 +158,7 @@ struct HttpServer::Impl : httplib::Server {
   HttpServerOptions options;
   std::string host;
   int port{0};
+  bool bound_unserved{false};
   std::stop_source stop;
   const int stop_fd{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
 };
@@ -166,6 +171,7 @@ Result<int> HttpServer::Impl::Bind(const std::string& on_host, int on_port) {
                                                      : -1;
   if (bound > 0) {
     ::listen(svr_sock_, 512);  // The library's backlog of 5 drops bursts.
+    bound_unserved = true;
     host = on_host;
     port = bound;
     return bound;
@@ -443,6 +449,7 @@ Result<int> HttpServer::Bind(const std::string& host, int port) {
 Result<void> HttpServer::Serve() {
   Impl& server = *impl_;
   while (!server.stop.stop_requested()) {
+    server.bound_unserved = false;
     server.listen_after_bind();
     if (server.stop.stop_requested()) break;
     // The library gives up when accept() fails once, say for want of memory.

@@ -290,6 +290,18 @@ def test_no_file_is_opened_that_a_mesh_refers_to(binary, database, tmp_path):
 
 
 
+def test_a_free_port_is_served_by_its_number(binary, database):
+    with socket.create_server(("127.0.0.1", 0)) as owner:
+        port = str(owner.getsockname()[1])
+    server = subprocess.Popen([binary, "serve", "--db", database, "--port",
+                               port], stdout=subprocess.PIPE)
+    try:
+        assert server.stdout.readline().endswith(f":{port}\n".encode())
+    finally:
+        server.terminate()
+        assert server.wait(30) == 0
+
+
 def test_a_taken_port_makes_no_database(binary, tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as owner:
         port = str(owner.getsockname()[1])

@@ -403,6 +403,16 @@ TEST_F(HttpServerTest, ASecondServerCannotTakeThePort) {
   EXPECT_THAT(bound.error().message, HasSubstr("Address already in use"));
 }
 
+TEST(HttpServer, APortThatWasBoundButNeverServedIsFreeAgain) {
+  int port = 0;
+  for (int round = 0; round < 2; ++round) {
+    HttpServer server(Router{}, HttpServerOptions{});
+    const auto bound = server.Bind("127.0.0.1", port);
+    ASSERT_TRUE(bound) << bound.error().message;
+    port = *bound;
+  }
+}
+
 TEST(HttpServer, StopBeforeServeIsNotLost) {
   HttpServer server(Router(), HttpServerOptions{});
   ASSERT_TRUE(server.Bind("127.0.0.1", 0));
