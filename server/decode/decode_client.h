@@ -14,7 +14,7 @@ namespace graspdb {
 struct DecoderOptions {
   /** The helper program; empty: graspdb-decode beside the running program. */
   std::string helper;
-  double deadline{10.0};                   ///< Of one mesh, wall clock, s.
+  double deadline{20.0};                   ///< Of one mesh, wall clock, s.
   int64_t memory_bytes{int64_t{1} << 30};  ///< Of one helper.
   /** Decode even where the kernel cannot confine the helper. */
   bool allow_unsandboxed{false};

@@ -232,7 +232,9 @@ Result<TransferRequest> MakeRequest(const Store& store,
   GRASPDB_TRY(example_parts, store.ReadSolids(plan.alignment.example_id));
   GRASPDB_TRY(novel_parts, store.ReadSolids(plan.novel.id));
   request.example = TakeWorkMesh(example);
-  request.novel = TakeWorkMesh(novel);
+  // The parts are of the working mesh, what is checked last is the object.
+  request.novel = {std::move(novel.canonical),
+                   std::move(novel.canonical_labels)};
   if (plan.novel.cloud) {
     request.seen_N = std::make_shared<const SeenSurface>(
         novel.cloud, CalcSeenReach(plan.novel.cloud->report));
