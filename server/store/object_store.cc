@@ -10,6 +10,7 @@ namespace {
 
 using store::CheckIdCursor;
 using store::CheckPage;
+using store::InsertParts;
 using store::MakePage;
 using store::ReadObject;
 using store::ReadParts;
@@ -218,58 +219,6 @@ void WriteSegmentation(Database& database, const std::string& id,
   WriteNotes(database, id, "warning", segmentation.warnings);
 }
 
-std::string MakePartId(const StoredObject& object, const StoredPart& part,
-                       const Part& solid) {
-  return MakeContentId("part " + object.sha256 + " " + object.units + " " +
-                       ToString(object.role) + " " + object.category + " " +
-                       part.label + " " + CalcSha256(EncodePart(solid)));
-}
-
-void InsertParts(Database& database, const StoredObject& object,
-                 const std::vector<StoredPart>& parts,
-                 const std::vector<Part>& solids) {
-  GRASPDB_EXPECTS(parts.size() == solids.size());
-  for (size_t i = 0; i < parts.size(); ++i) {
-    const StoredPart& part = parts[i];
-    const std::string id = MakePartId(object, part, solids[i]);
-    database.Prepare("INSERT INTO parts VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .Bind(id, object.id, part.label_index, part.label, part.area,
-              part.volume, part.confidence)
-        .BindBlob(EncodeIndices(part.faces))
-        .BindBlob(EncodePart(solids[i]))
-        .Run();
-    for (const std::string& label : part.adjacent) {
-      database.Prepare("INSERT INTO part_adjacency VALUES (?, ?)")
-          .Bind(id, label)
-          .Run();
-    }
-  }
-}
-
-StoredPart MakePart(const Statement& row) {
-  StoredPart part;
-  part.id = row.Text(0);
-  part.object_id = row.Text(1);
-  part.label_index = static_cast<int>(row.Int(2));
-  part.label = row.Text(3);
-  part.area = row.Double(4);
-  part.volume = row.Double(5);
-  part.confidence = row.Double(6);
-  part.faces = Unwrap(DecodeIndices(row.Blob(7)));
-  return part;
-}
-
-void ReadAdjacency(Database& database, StoredPart& part) {
-  Statement rows =
-      database.Prepare("SELECT label FROM part_adjacency WHERE part_id = ?");
-  rows.Bind(part.id);
-  while (rows.Step()) part.adjacent.push_back(rows.Text(0));
-}
-
-constexpr char kPartColumns[] =
-    "SELECT id, object_id, label_index, label, area, volume, confidence,"
-    " faces FROM parts ";
-
 // "3 grasp spaces and 1 transfer (ids …)" that need an object as it is; empty
 // when nothing does.
 std::string DescribeDependents(Database& database, const std::string& id) {
@@ -317,19 +266,6 @@ StoredObject ReadObject(Database& database, const std::string& id) {
   }
   ReadLists(database, object);
   return object;
-}
-
-std::vector<StoredPart> ReadParts(Database& database,
-                                  const std::string& object_id) {
-  std::vector<StoredPart> parts;
-  {
-    Statement rows = database.Prepare(
-        std::string(kPartColumns) + "WHERE object_id = ? ORDER BY label_index");
-    rows.Bind(object_id);
-    while (rows.Step()) parts.push_back(MakePart(rows));
-  }
-  for (StoredPart& part : parts) ReadAdjacency(database, part);
-  return parts;
 }
 
 void CheckObjects(Database& database, CheckReport& report) {
@@ -509,47 +445,6 @@ Result<void> Store::DeleteObject(const std::string& id, bool cascade) {
         .Bind(id)
         .Run();
     database.Prepare("DELETE FROM objects WHERE id = ?").Bind(id).Run();
-  });
-}
-
-Result<std::vector<StoredPart>> Store::ListParts(
-    const std::string& object_id) const {
-  return impl_->Read([&](Database& database) {
-    ReadObject(database, object_id);
-    return ReadParts(database, object_id);
-  });
-}
-
-Result<StoredPart> Store::FindPart(const std::string& id) const {
-  return impl_->Read([&](Database& database) {
-    StoredPart part;
-    {
-      Statement row =
-          database.Prepare(std::string(kPartColumns) + "WHERE id = ?");
-      if (!row.Bind(id).Step()) {
-        Throw(ErrorCode::kNotFound, "There is no part '" + id + "'.",
-              "GET /v1/objects/{id}/parts lists an object's", "id");
-      }
-      part = MakePart(row);
-    }
-    ReadAdjacency(database, part);
-    return part;
-  });
-}
-
-Result<std::vector<Part>> Store::ReadSolids(
-    const std::string& object_id) const {
-  return impl_->Read([&](Database& database) {
-    std::vector<Part> solids;
-    Statement rows = database.Prepare(
-        "SELECT solid, confidence FROM parts WHERE object_id = ?"
-        " ORDER BY label_index");
-    rows.Bind(object_id);
-    while (rows.Step()) {
-      solids.push_back(Unwrap(DecodePart(rows.Blob(0))));
-      solids.back().confidence = rows.Double(1);
-    }
-    return solids;
   });
 }
 

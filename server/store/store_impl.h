@@ -110,6 +110,10 @@ auto ListByName(Database& database, const std::string& table,
 }
 
 StoredObject ReadObject(Database& database, const std::string& id);
+/** Adds the parts of a stored object that has none. */
+void InsertParts(Database& database, const StoredObject& object,
+                 const std::vector<StoredPart>& parts,
+                 const std::vector<Part>& solids);
 std::vector<StoredPart> ReadParts(Database& database,
                                   const std::string& object_id);
 /** Adds a parameter set, once. */
