@@ -17,6 +17,9 @@
 namespace graspdb {
 namespace {
 
+// An object that lacks a part is still one of the category from here on.
+constexpr double kSimilar = 0.5;
+
 // The example that fits best, laid over the novel object.
 struct Match {
   int example{0};
@@ -137,15 +140,19 @@ class Judge {
                     parameters_.max_residual));
   }
 
+  // @param similarity  Of the whole: a mug may have lost its handle, a bowl
+  //   never had one.
   // @param partial  Areas tell nothing, and a part may be out of sight.
   void CheckShares(const PartStatistics& novel, const PartStatistics& example,
-                   bool partial) {
+                   double similarity, bool partial) {
     for (size_t label = 0; label < novel.shares.size(); ++label) {
       if (example.shares[label] == 0.0) continue;
       const double ratio = novel.shares[label] / example.shares[label];
       const std::string part = "the " + vocabulary_.labels[label];
       if (ratio == 0.0) {
-        Fail(SegmentationVerdict::kUnsure, part + " was not found");
+        Fail(similarity >= kSimilar ? SegmentationVerdict::kUnsure
+                                    : SegmentationVerdict::kForeign,
+             part + " was not found");
       } else if (!partial && (ratio < parameters_.min_area_ratio ||
                               ratio > parameters_.max_area_ratio)) {
         const bool is_narrow = ratio > 0.5 * parameters_.min_area_ratio &&
@@ -263,6 +270,7 @@ Result<SegmentationResult> SegmentObject(
   result.similarity =
       CalcSimilarity(match->alignment, parameters.half_similarity);
 
+  const bool partial = seen_N != nullptr;
   Judge judge(vocabulary, parameters);
   judge.CheckResidual(result.residual);
   const PartStatistics novel =
@@ -270,7 +278,7 @@ Result<SegmentationResult> SegmentObject(
   const PartStatistics known =
       CalcStatistics(example.mesh_O, example.face_labels,
                      CalcFaceLinks(example.mesh_O), num_labels);
-  judge.CheckShares(novel, known, seen_N != nullptr);
+  judge.CheckShares(novel, known, partial ? 1.0 : result.similarity, partial);
   judge.CheckTopology(novel, known);
 
   auto parts = CutIntoParts({mesh_N, result.face_labels}, vocabulary);

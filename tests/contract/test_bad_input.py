@@ -942,11 +942,11 @@ def test_a_decoder_that_crashes_or_hangs_is_a_422_and_the_server_serves(
         mood.write_text(word)
         replies = []
         waiting = threading.Thread(target=lambda: replies.append(
-            requests.post(live.url + "/v1/objects", data=BOX, timeout=20)))
+            requests.post(live.url + "/v1/objects", data=BOX, timeout=40)))
         waiting.start()
         time.sleep(0.1)
         client.call("getReadiness", 200)
-        waiting.join(15)
+        waiting.join(40)
         assert replies[0].status_code == 422 and replies[0].json()["detail"]
         assert client.call("listObjects", 200)["items"] == []
     mood.write_text("sound")
