@@ -57,4 +57,6 @@ void RunInArena(int threads, const std::function<void()>& work) {
   join.Enter();
 }
 
+int CountThreads() { return tbb::this_task_arena::max_concurrency(); }
+
 }  // namespace graspdb

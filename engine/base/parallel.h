@@ -24,4 +24,7 @@ auto RunWithThreads(int threads, const Work& work) {
   return std::move(*result);
 }
 
+/** How many threads the caller may use. */
+int CountThreads();
+
 }  // namespace graspdb

@@ -103,6 +103,7 @@ class CommandLine {
     AddQuery();
     AddSegment();
     AddLearn();
+    AddVerify();
     AddRender();
     AddCheck();
   }
@@ -184,6 +185,7 @@ class CommandLine {
   void AddQuery();
   void AddSegment();
   void AddLearn();
+  void AddVerify();
   void AddRender();
   void AddCheck();
 
@@ -420,6 +422,43 @@ void CommandLine::AddLearn() {
       Progress progress(program.options().json);
       GRASPDB_TRY(spaces, backend->Learn(*order, progress));
       return program.Print(spaces, ReportGraspSpaces);
+    };
+  });
+}
+
+void CommandLine::AddVerify() {
+  CLI::App* command = AddCommand(
+      "verify", "Push on stored grasps in a simulator and keep the verdicts.",
+      "graspdb verify --category mug --stage assembly", false);
+  AddEngineOptions(command);
+  const auto order = Share<VerifyOrder>();
+  const auto stage = Share<std::string>();
+  GraspQuery& query = order->query;
+  command->add_option("--category", query.category, "category");
+  command->add_option("--part", query.part_labels, "part labels");
+  command->add_option("--hand", query.hand, "hand");
+  command->add_option("--object", query.object_id, "object's id");
+  command->add_option("--transfer", query.transfer_id, "transfer's id");
+  command->add_option("--stage", *stage, "learned, transfer, assembly");
+  command
+      ->add_option("--limit", order->limit, "most grasps, best first; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--again", order->again, "those with a verdict, too");
+  command->callback([this, order, stage] {
+    action_ = [order, stage](Program& program) -> Result<int> {
+      if (!stage->empty()) {
+        GRASPDB_TRY(parsed, ParseGraspStage(*stage));
+        order->query.stage = parsed;
+      }
+      GRASPDB_TRY(service, program.OpenService(Store::OpenMode::kMustExist));
+      Progress progress(program.options().json);
+      ExecutionContext context(
+          [&progress](const std::string& what, double share) {
+            progress.Report(what, share);
+          });
+      GRASPDB_TRY(verified, service->VerifyGrasps(*order, context));
+      return program.Print(VerificationToJson(verified), ReportVerification);
     };
   });
 }

@@ -1,6 +1,7 @@
 #include "server/cli/report.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -144,6 +145,56 @@ std::string ReportGraspSpaces(const std::string& list) {
                     Number(space["seconds"], 1), Text(space["id"])});
   }
   return FormatTable(rows);
+}
+
+std::string VerificationToJson(const std::vector<VerifiedGrasp>& verified) {
+  const PushTest test;
+  Json json;
+  json["simulator"] = SimulatorVersion();
+  json["friction"] = test.friction;
+  json["force_n"] = test.force;
+  json["mass_kg"] = test.mass;
+  json["grasps"] = Json::array();
+  for (const auto& [grasp, verdict] : verified) {
+    json["grasps"].push_back({{"id", grasp.id},
+                              {"object", grasp.object_id},
+                              {"category", grasp.category},
+                              {"part", grasp.part_label},
+                              {"stage", ToString(grasp.stage)},
+                              {"physical", verdict.CalcScore()},
+                              {"settled", verdict.settled},
+                              {"settle_shift_m", verdict.settle_shift},
+                              {"settle_turn_rad", verdict.settle_turn},
+                              {"shift_m", verdict.shift},
+                              {"turn_rad", verdict.turn}});
+  }
+  return DumpJson(json);
+}
+
+std::string ReportVerification(const std::string& verification) {
+  const Json json = Json::parse(verification);
+  struct Count {
+    int all{0};
+    int settled{0};
+    int held{0};
+  };
+  std::map<std::pair<std::string, std::string>, Count> counts;
+  for (const Json& grasp : json["grasps"]) {
+    Count& count = counts[{Text(grasp["category"]), Text(grasp["part"])}];
+    ++count.all;
+    count.settled += grasp["settled"].get<bool>() ? 1 : 0;
+    count.held += grasp["physical"].get<double>() == 1.0 ? 1 : 0;
+  }
+  std::vector<Row> rows{{"category", "part", "grasps", "settled", "held"}};
+  for (const auto& [key, count] : counts) {
+    rows.push_back({key.first, key.second, std::to_string(count.all),
+                    std::to_string(count.settled),
+                    fmt::format("{} ({:.0f} %)", count.held,
+                                100.0 * count.held / count.all)});
+  }
+  return FormatTable(rows) + Text(json["simulator"]) + ", six pushes of " +
+         Number(json["force_n"], 1) + " N at friction " +
+         Number(json["friction"], 2) + "\n";
 }
 
 std::string ReportCheck(const std::string& check) {

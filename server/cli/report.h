@@ -1,6 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "server/jobs/service.h"
 
 /** @file
  Answers for people: JSON of schema/openapi.yaml as lines of text. */
@@ -15,6 +18,10 @@ std::string ReportGrasps(const std::string& list);
 std::string ReportObject(const std::string& object);
 /** A list of grasp spaces. */
 std::string ReportGraspSpaces(const std::string& list);
+/** {"simulator", "friction", …, "grasps": [{"id", "physical", …}]} */
+std::string VerificationToJson(const std::vector<VerifiedGrasp>& verified);
+/** The same for people: counts per category and part. */
+std::string ReportVerification(const std::string& verification);
 /** What a check of the database found. */
 std::string ReportCheck(const std::string& check);
 

@@ -14,6 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/parameters/parameters.h"
 #include "engine/registration/shape_descriptor.h"
+#include "engine/simulation/grasp_simulator.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -49,6 +50,17 @@ struct ImportResult {
   StoredObject object;
   std::vector<StoredPart> parts;
   bool created{false};  ///< False when the object was stored before.
+};
+
+struct VerifyOrder {
+  GraspQuery query;   ///< Which; its page is of no account.
+  int64_t limit{0};   ///< Most grasps, best first; 0: all.
+  bool again{false};  ///< Those as well that have a verdict.
+};
+
+struct VerifiedGrasp {
+  StoredGrasp grasp;
+  PhysicalVerdict verdict;
 };
 
 /** The verbs of the application, without HTTP: what the server's routes and the
@@ -114,6 +126,11 @@ class Service {
                                           std::optional<int> count) const;
 
   Result<Page<StoredGrasp>> QueryGrasps(const GraspSearch& search) const;
+
+  /** Lets a simulator judge stored grasps, best first, and keeps its verdicts,
+   object by object. */
+  Result<std::vector<VerifiedGrasp>> VerifyGrasps(const VerifyOrder& order,
+                                                  ExecutionContext& context);
 
   // ---- Jobs -----------------------------------------------------------------
   // Submit… checks what can be checked at once (names, ranges, what is

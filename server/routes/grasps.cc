@@ -92,7 +92,7 @@ Result<GraspSearch> ReadSearch(QueryReader& query) {
   wanted.grasp_space_id = query.Text("grasp_space").value_or("");
   wanted.transfer_id = query.Text("transfer").value_or("");
   wanted.min_epsilon = query.Number("min_epsilon", 0.0, 1.0);
-  wanted.verified = query.Boolean("verified");
+  wanted.held = query.Choice("verified", {"physical"}).has_value();
   if (const auto stage =
           query.Choice("stage", {"learned", "transfer", "assembly"})) {
     GRASPDB_TRY(parsed, ParseGraspStage(*stage));

@@ -126,10 +126,7 @@ Filter MakeGraspFilter(const GraspQuery& query) {
         " AND c.part_label = ? AND c.distance < ?)",
         label, query.min_clearance);
   }
-  if (query.verified) {
-    filter.Add(*query.verified ? "g.physical IS NOT NULL"
-                               : "g.physical IS NULL");
-  }
+  if (query.held) filter.Add("g.physical >= 1.0");
   return filter;
 }
 
@@ -170,6 +167,17 @@ Result<StoredGrasp> Store::FindGrasp(const std::string& id) const {
             "GET /v1/grasps lists them", "id");
     }
     return MakeGrasp(database, row);
+  });
+}
+
+Result<void> Store::SetPhysical(
+    const std::vector<std::pair<std::string, double>>& verdicts) {
+  return impl_->Write([&](Database& database) {
+    for (const auto& [id, physical] : verdicts) {
+      database.Prepare("UPDATE grasps SET physical = ? WHERE id = ?")
+          .Bind(physical, id)
+          .Run();
+    }
   });
 }
 

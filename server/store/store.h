@@ -30,7 +30,7 @@ struct GraspQuery {
   std::string transfer_id;
   std::optional<GraspStage> stage;
   std::optional<double> min_epsilon;
-  std::optional<bool> verified;  ///< Whether a physical verdict is known.
+  bool held{false};  ///< Only what a simulator has found to hold every push.
   Sort sort{Sort::kEpsilon};
   PageRequest page;
 };
@@ -160,6 +160,10 @@ class Store {
 
   Result<StoredGrasp> FindGrasp(const std::string& id) const;
   /** @retval kInvalidArgument for a cursor of another query. */
+  /** Keeps what a simulator found: grasp ids and 0..1. Unknown ids are passed
+   over. */
+  Result<void> SetPhysical(
+      const std::vector<std::pair<std::string, double>>& verdicts);
   Result<Page<StoredGrasp>> QueryGrasps(const GraspQuery& query) const;
 
   // ---- Transfers ------------------------------------------------------------

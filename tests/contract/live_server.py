@@ -10,6 +10,7 @@ class LiveServer:
     """Runs `graspdb serve` and ends it as an operator would."""
 
     def __init__(self, binary, database, folder, *flags):
+        self.database = database
         self.log_path = folder / "server.log"
         self.port_file = folder / "port"
         self.port_file.unlink(missing_ok=True)

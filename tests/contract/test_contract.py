@@ -4,6 +4,7 @@ import gzip
 import json
 import math
 import socket
+import subprocess
 import threading
 import time
 from xml.etree import ElementTree
@@ -384,7 +385,7 @@ def test_stored_grasps_can_be_queried(contract, world, answer):
     learned = contract.call("queryGrasps", 200, query={
         "category": "mug", "part": "body", "stage": "learned", "limit": 5,
         "hand": "barrett-bh8-280", "grasp_space": world["space"]["id"],
-        "min_epsilon": 0.001, "verified": "false", "sort": "epsilon"})
+        "min_epsilon": 0.001, "sort": "epsilon"})
     assert 0 < len(learned["items"]) <= 5
     epsilons = [g["quality"]["epsilon"] for g in learned["items"]]
     assert epsilons == sorted(epsilons, reverse=True)
@@ -403,6 +404,27 @@ def test_stored_grasps_can_be_queried(contract, world, answer):
                         ("object", UNKNOWN_UUID), ("task", "juggle")):
         contract.call("queryGrasps", 404,
                       query={"category": "mug", name: value})
+
+
+def test_what_the_simulator_found_is_kept_and_can_be_asked_for(
+        contract, world, binary, server):
+    space = {"grasp_space": world["space"]["id"]}
+    best = contract.call("queryGrasps", 200, query={**space, "limit": 2})
+    assert [g["quality"]["physical"] for g in best["items"]] == [None, None]
+    told = json.loads(subprocess.run(
+        [binary, "verify", "--db", server.database, "--stage", "learned",
+         "--object", world["example"]["id"], "--limit", "2", "--json"],
+        check=True, capture_output=True, timeout=120).stdout)
+    assert told["simulator"].startswith("MuJoCo")
+    found = {g["id"]: g["physical"] for g in told["grasps"]}
+    assert set(found) == {g["id"] for g in best["items"]}
+    for grasp_id, physical in found.items():
+        grasp = contract.call("getGrasp", 200, path={"id": grasp_id})
+        assert grasp["quality"]["physical"] == physical
+    held = contract.call("queryGrasps", 200,
+                         query={**space, "verified": "physical"})
+    assert ({g["id"] for g in held["items"]} ==
+            {grasp_id for grasp_id, value in found.items() if value == 1})
 
 
 def test_pages_of_grasps_join_to_the_whole(contract, world):

@@ -20,6 +20,7 @@ CONTAINMENT = {
     "libqhull_r/*": (["engine/math/*.cc"], 1),
     "libsvm/*": (["engine/cspace/svm.cc"], 1),
     "svm.h": (["engine/cspace/svm.cc"], 1),
+    "mujoco/*": (["engine/simulation/grasp_simulator.cc"], 1),
     "nanoflann.hpp": (["engine/math/kd_tree.cc"], 1),
     "nlohmann/*": (["server/codec/*", "server/http/*"], None),
     "openssl/*": (["server/ids.cc", "server/store/*.cc", "server/codec/*.cc"],

@@ -271,6 +271,23 @@ TEST_F(StoreTest, QueriesLeaveOutGraspsTooNearWhatIsKeptFree) {
   EXPECT_THAT(store_->QueryGrasps(query).value().items, SizeIs(9));
 }
 
+TEST_F(StoreTest, PhysicalVerdictsAreKeptAndCanBeAskedFor) {
+  const StoredGraspSpace space =
+      AddSpace(AddObject("e", ObjectRole::kExample), 1, 5, 4);
+  const std::vector<StoredGrasp> grasps = GraspsOf(space);
+  ASSERT_TRUE(store_->SetPhysical(
+      {{grasps[0].id, 1.0}, {grasps[1].id, 0.5}, {"unknown", 1.0}}));
+  Reopen();
+  EXPECT_EQ(store_->FindGrasp(grasps[0].id)->physical, 1.0);
+  EXPECT_EQ(store_->FindGrasp(grasps[1].id)->physical, 0.5);
+  EXPECT_EQ(store_->FindGrasp(grasps[2].id)->physical, std::nullopt);
+  GraspQuery query;
+  query.held = true;
+  const auto held = store_->QueryGrasps(query).value().items;
+  ASSERT_THAT(held, SizeIs(1));
+  EXPECT_EQ(held[0].id, grasps[0].id);
+}
+
 TEST_F(StoreTest, ATransferIsStoredOnce) {
   const StoredGraspSpace space =
       AddSpace(AddObject("e", ObjectRole::kExample), 1, 5, 9);

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "engine/geometry/triangle_mesh.h"
+#include "engine/hand/hand_model.h"
+#include "engine/planning/grasp.h"
+
+namespace graspdb {
+
+/** The six-push test: what is simulated and what counts as held. */
+struct PushTest {
+  double friction{0.5};        ///< Coulomb, sliding.
+  double torsion{0.003};       ///< Torsional friction, m.
+  double mass{0.1};            ///< Of the object, kg, uniform.
+  double force{1.0};           ///< Of each push, N.
+  double ramp_seconds{0.1};    ///< From zero to that force …
+  double push_seconds{1.0};    ///< … which then stays so long.
+  double settle_seconds{0.6};  ///< After the fingers have closed.
+  double closing_speed{1.0};   ///< Of a motor, rad/s (m/s for a slide).
+  double closing_force{5.0};   ///< Of a finger at its tip, N …
+  double holding_force{15.0};  ///< … and what its worm gear then stands.
+  double stiffness{100.0};     ///< Of a joint until it yields, N m/rad.
+  /** Whether the object stays where it is until the fingers have closed, as the
+   engine has it, or floats from the start: whatever touches it first then
+   pushes it away. */
+  bool fixed_while_closing{true};
+  double time_step{0.001};              ///< s.
+  double max_shift{0.02};               ///< Of the mass centre, m.
+  double max_turn{0.2617993877991494};  ///< 15 degrees.
+};
+
+/** What became of one grasp. */
+struct PhysicalVerdict {
+  bool settled{false};            ///< Moved less than the limits while closing.
+  double settle_shift{0.0};       ///< m.
+  double settle_turn{0.0};        ///< rad.
+  std::array<double, 6> shift{};  ///< Per push, +x -x +y -y +z -z, m …
+  std::array<double, 6> turn{};   ///< … and rad, up to where it was lost.
+  std::array<bool, 6> held{};
+
+  /** 0..1, the share of pushes that were withstood; 0 when not settled. */
+  double CalcScore() const;
+  bool operator==(const PhysicalVerdict&) const = default;
+};
+
+/** Judges grasps of one object by one hand in MuJoCo, apart from all that the
+ engine itself knows of contacts. The object floats at rest in its own frame O,
+ without gravity; the hand's base is fixed. The fingers close from the
+ pre-grasp, each joint until it meets its torque limit, and then stand as a worm
+ gear does: springy up to that limit, yielding beyond. Then six pushes, each
+ from the settled state. Deterministic. May be used by one thread at a time. */
+class GraspSimulator {
+ public:
+  /** @param mesh_O  Closed. */
+  GraspSimulator(std::shared_ptr<const HandModel> hand,
+                 const TriangleMesh& mesh_O, const PushTest& test);
+  ~GraspSimulator();
+  GraspSimulator(GraspSimulator&&) noexcept;
+  GraspSimulator& operator=(GraspSimulator&&) noexcept;
+
+  PhysicalVerdict Judge(const Grasp& grasp);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/** Which simulator, and its version, for provenance. */
+const char* SimulatorVersion();
+
+}  // namespace graspdb
