@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 
@@ -61,11 +62,13 @@ TEST(Decoder, AnswersManyMutantsOfEachFormat) {
   auto files = MakeEveryFile(mesh);
   const auto points = SamplePoissonDisk(mesh, 300, 1).points;
   for (auto& cloud : MakeEveryCloud(points)) files.push_back(std::move(cloud));
-  constexpr int kMutants = 120;
+  const char* wanted = std::getenv("GRASPDB_MUTANTS");  // Of each file.
+  const int mutants = wanted == nullptr ? 120 : std::atoi(wanted);
+  ASSERT_GE(mutants, 10);
   std::vector<std::pair<std::string, FileBytes>> work;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto& [name, bytes] = files[i];
-    for (int k = 0; k < kMutants; ++k) {
+    for (int k = 0; k < mutants; ++k) {
       Random random(DeriveSeed(11, {i, static_cast<uint64_t>(k)}));
       work.emplace_back(name, Mutate(bytes, random));
     }
@@ -97,8 +100,8 @@ TEST(Decoder, AnswersManyMutantsOfEachFormat) {
   run();
   other.join();
   EXPECT_EQ(solids + refused, std::ssize(work));
-  EXPECT_GT(solids, 50);
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(solids, mutants / 3);
+  EXPECT_GT(refused, mutants);
 }
 
 }  // namespace
