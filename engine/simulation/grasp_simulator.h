@@ -18,7 +18,7 @@ struct PushTest {
   double ramp_seconds{0.1};    ///< From zero to that force …
   double push_seconds{1.0};    ///< … which then stays so long.
   double settle_seconds{0.6};  ///< After the fingers have closed.
-  double closing_speed{1.0};   ///< Of a motor, rad/s (m/s for a slide).
+  double closing_speed{1.0};   ///< Of a motor, rad/s; of a slide 0.1 m/rad.
   double closing_force{5.0};   ///< Of a finger at its tip, N …
   double holding_force{15.0};  ///< … and what its worm gear then stands.
   double stiffness{100.0};     ///< Of a joint until it yields, N m/rad.
@@ -33,7 +33,7 @@ struct PushTest {
 
 /** What became of one grasp. */
 struct PhysicalVerdict {
-  bool settled{false};            ///< Moved less than the limits while closing.
+  bool settled{false};            ///< Moved less than the limits until pushed.
   double settle_shift{0.0};       ///< m.
   double settle_turn{0.0};        ///< rad.
   std::array<double, 6> shift{};  ///< Per push, +x -x +y -y +z -z, m …
@@ -46,11 +46,12 @@ struct PhysicalVerdict {
 };
 
 /** Judges grasps of one object by one hand in MuJoCo, apart from all that the
- engine itself knows of contacts. The object floats at rest in its own frame O,
- without gravity; the hand's base is fixed. The fingers close from the
- pre-grasp, each joint until it meets its torque limit, and then stand as a worm
- gear does: springy up to that limit, yielding beyond. Then six pushes, each
- from the settled state. Deterministic. May be used by one thread at a time. */
+ engine itself knows of contacts. The object is at rest in its own frame O,
+ without gravity, free as soon as PushTest says; the hand's base is fixed. The
+ fingers close from the pre-grasp, each joint until it meets its torque limit,
+ and then stand as a worm gear does: springy up to that limit, yielding beyond.
+ Then six pushes, each from the settled state. Deterministic. May be used by one
+ thread at a time. */
 class GraspSimulator {
  public:
   /** @param mesh_O  Closed. */
@@ -60,6 +61,9 @@ class GraspSimulator {
   GraspSimulator(GraspSimulator&&) noexcept;
   GraspSimulator& operator=(GraspSimulator&&) noexcept;
 
+  /** @param grasp  Its pre-grasp joints, and X_OH; the joints where closing
+   ended matter only for what does not close.
+   @throws std::runtime_error when MuJoCo fails. */
   PhysicalVerdict Judge(const Grasp& grasp);
 
  private:

@@ -6,14 +6,13 @@
 
 #include "server/codec/parameters_json.h"
 #include "server/ids.h"
-#include "server/jobs/segmentation.h"
 #include "server/jobs/service.h"
 #include "server/jobs/sub_context.h"
+#include "server/jobs/transfer_plan.h"
 
 namespace graspdb {
 namespace {
 
-constexpr uint64_t kAlignmentSeed = 1;
 constexpr double kImportShare = 0.15;  // Of a transfer's progress.
 
 using Seconds = std::chrono::duration<double>;
@@ -22,171 +21,9 @@ double CalcSecondsSince(ExecutionContext::Clock::time_point start) {
   return Seconds(ExecutionContext::Clock::now() - start).count();
 }
 
-bool Contains(const std::vector<std::string>& list, const std::string& item) {
-  return std::find(list.begin(), list.end(), item) != list.end();
-}
-
-// How the example lies on the novel object.
-struct Alignment {
-  std::string example_id;
-  RigidTransform X_NE;
-  double scale{1.0};
-  double similarity{0.0};
-};
-
-// All that a transfer starts from.
-struct Plan {
-  StoredObject novel;
-  std::vector<StoredPart> novel_parts;
-  std::vector<StoredPart> example_parts;
-  Alignment alignment;
-  /** For each novel part what was learned for its label, if it is wanted. */
-  std::vector<std::optional<StoredGraspSpace>> spaces;
-  std::vector<std::string> labels;     ///< Of the category's parts.
-  std::vector<std::string> wanted;     ///< Of them, what grasps are for …
-  std::vector<std::string> keep_free;  ///< … and what the task keeps free.
-  std::vector<std::string> warnings;
-};
-
-// The stored alignment, or a new one when its example is gone or when the parts
-// were labelled by hand.
-Result<Alignment> FindAlignment(const Store& store, const StoredObject& object,
-                                const StoredCategory& category,
-                                ExecutionContext& context) {
-  const StoredSegmentation& known = object.segmentation;
-  if (!known.example_id.empty()) {
-    return Alignment{known.example_id, known.X_NE, known.scale,
-                     known.similarity};
-  }
-  GRASPDB_TRY(meshes, store.ReadObjectMeshes(object.id));
-  GRASPDB_TRY(found, SegmentByExamples(store, category, category.segmentation,
-                                       meshes, "", kAlignmentSeed, context));
-  return Alignment{found.record.example_id, found.record.X_NE,
-                   found.record.scale, found.record.similarity};
-}
-
-// What was learned last for one part of an example.
-Result<std::optional<StoredGraspSpace>> FindNewestSpace(
-    const Store& store, const std::string& example_id, const std::string& label,
-    const std::string& hand) {
-  std::optional<StoredGraspSpace> newest;
-  PageRequest page{1000, ""};
-  do {
-    GRASPDB_TRY(spaces,
-                store.ListGraspSpaces({"", label, hand, example_id}, page));
-    if (!spaces.items.empty()) newest = spaces.items.back();
-    page.cursor = spaces.next_cursor;
-  } while (!page.cursor.empty());
-  return newest;
-}
-
-Error MakeNotLearned(const std::string& category, const std::string& hand,
-                     const std::string& example_id) {
-  return Error{ErrorCode::kConflict,
-               "Nothing has been learned yet for category '" + category +
-                   "' with hand '" + hand + "'.",
-               example_id.empty()
-                   ? "graspdb populate data, or POST /v1/categories/" +
-                         category + "/examples"
-                   : "graspdb learn " + example_id + " --hand " + hand +
-                         ", or POST /v1/objects/" + example_id +
-                         "/grasp-spaces",
-               "category"};
-}
-
-// Which parts are wanted: by label, by task, or all.
-Result<std::vector<std::string>> FindWantedLabels(
-    const TransferOrder& order, const StoredCategory& category) {
-  const std::vector<std::string> all = MakeVocabulary(category).labels;
-  if (!order.task.empty()) {
-    auto labels = FindPartsForTask(category, order.task);
-    if (!labels.empty()) return labels;
-    std::vector<std::string> tasks;
-    for (const CategoryPart& part : category.parts) {
-      for (const auto& [task, note] : part.tasks) {
-        if (!Contains(tasks, task)) tasks.push_back(task);
-      }
-    }
-    return Error{ErrorCode::kNotFound,
-                 "No part of category '" + category.name + "' serves '" +
-                     order.task + "'.",
-                 fmt::format("known: {}", fmt::join(tasks, ", ")), "task"};
-  }
-  for (const std::string& label : order.part_labels) {
-    if (Contains(all, label)) continue;
-    return Error{
-        ErrorCode::kNotFound,
-        "Category '" + category.name + "' has no part '" + label + "'.",
-        fmt::format("known: {}", fmt::join(all, ", ")), "part"};
-  }
-  return order.part_labels.empty() ? all : order.part_labels;
-}
-
-Result<Plan> MakePlan(const Store& store, const TransferOrder& order,
-                      const StoredObject& novel, ExecutionContext& context) {
-  Plan plan;
-  plan.novel = novel;
-  plan.warnings = novel.segmentation.warnings;
-  if (novel.cloud && novel.cloud->report.one_sided) {
-    plan.warnings.push_back(fmt::format(
-        "the cloud was seen from one side: {:.0f} % of the surface is made up",
-        100.0 * (1.0 - novel.cloud->seen_share)));
-  }
-  GRASPDB_TRY(category, store.FindCategory(novel.category));
-  if (novel.segmentation.verdict == ToString(SegmentationVerdict::kForeign)) {
-    return Error{ErrorCode::kNotInCategory,
-                 fmt::format("The object does not look like a {} (similarity "
-                             "{:.2f}).",
-                             category.name, novel.segmentation.similarity),
-                 "POST /v1/objects/" + novel.id +
-                     "/segmentation with face labels, or name another category",
-                 "category"};
-  }
-  GRASPDB_TRY(alignment, FindAlignment(store, novel, category, context));
-  plan.alignment = alignment;
-  GRASPDB_TRY(novel_parts, store.ListParts(novel.id));
-  GRASPDB_TRY(example_parts, store.ListParts(alignment.example_id));
-  plan.novel_parts = std::move(novel_parts);
-  plan.example_parts = std::move(example_parts);
-  plan.labels = MakeVocabulary(category).labels;
-  plan.keep_free = FindPartsKeptFree(category, order.task);
-  GRASPDB_TRY(wanted, FindWantedLabels(order, category));
-  plan.wanted = wanted;
-  int found = 0;
-  for (const StoredPart& part : plan.novel_parts) {
-    plan.spaces.emplace_back();
-    if (!Contains(wanted, part.label)) continue;
-    ++found;
-    GRASPDB_TRY(space, FindNewestSpace(store, alignment.example_id, part.label,
-                                       order.hand));
-    if (!space) {
-      plan.warnings.push_back("nothing is learned for the " + part.label);
-    }
-    plan.spaces.back() = space;
-  }
-  if (found == 0) {
-    return Error{ErrorCode::kNotInCategory,
-                 fmt::format("The object has no {}.", fmt::join(wanted, ", ")),
-                 "GET /v1/objects/" + novel.id + "/parts lists its parts",
-                 "part"};
-  }
-  if (std::none_of(plan.spaces.begin(), plan.spaces.end(),
-                   [](const auto& space) { return space.has_value(); })) {
-    return MakeNotLearned(category.name, order.hand, alignment.example_id);
-  }
-  for (const std::string& label : wanted) {
-    if (std::none_of(
-            plan.novel_parts.begin(), plan.novel_parts.end(),
-            [&](const StoredPart& part) { return part.label == label; })) {
-      plan.warnings.push_back("the object has no " + label);
-    }
-  }
-  return plan;
-}
-
 // The row of the transfer before it ran.
 StoredTransfer DescribeTransferRow(const TransferOrder& order,
-                                   const Plan& plan) {
+                                   const TransferPlan& plan) {
   StoredTransfer row;
   row.object_id = plan.novel.id;
   row.example_id = plan.alignment.example_id;
@@ -222,7 +59,7 @@ LabelledMesh TakeWorkMesh(ObjectMeshes& meshes) {
 
 Result<TransferRequest> MakeRequest(const Store& store,
                                     const TransferOrder& order,
-                                    const Plan& plan,
+                                    const TransferPlan& plan,
                                     std::shared_ptr<const HandModel> hand,
                                     int threads) {
   TransferRequest request;
@@ -285,7 +122,7 @@ std::vector<std::optional<Eigen::Vector3d>> MatchTargets(
 // Turns the engine's records into rows.
 class RowMaker {
  public:
-  RowMaker(const Plan& plan, const TransferRequest& request,
+  RowMaker(const TransferPlan& plan, const TransferRequest& request,
            StoredTransfer& transfer)
       : plan_(plan), request_(request), transfer_(transfer) {}
 
@@ -370,7 +207,7 @@ class RowMaker {
     return grasps_.back().id;
   }
 
-  const Plan& plan_;
+  const TransferPlan& plan_;
   const TransferRequest& request_;
   StoredTransfer& transfer_;
   std::vector<StoredGrasp> grasps_;
@@ -457,7 +294,7 @@ Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
   const auto start = ExecutionContext::Clock::now();
   GRASPDB_TRY(checked, CheckTransfer(order));
   GRASPDB_TRY(novel, FindTransferObject(checked, context));
-  GRASPDB_TRY(plan, MakePlan(*store_, checked, novel, context));
+  GRASPDB_TRY(plan, MakeTransferPlan(*store_, checked, novel, context));
   StoredTransfer row = DescribeTransferRow(checked, plan);
   if (const auto known = store_->FindTransfer(row.id); known) {
     context.ReportProgress("known", 1.0);

@@ -207,9 +207,9 @@ TEST(CalcDissimilarity, SeesTheStretchThatTheResidualForgives) {
   const TriangleMesh bar = workshop::MakeBox({0.3, 0.06, 0.06}, 20);
   std::vector<Eigen::Vector3d> vertices = bar.vertices();
   for (Eigen::Vector3d& p : vertices) p.x() *= 0.6;
-  const TriangleMesh stub(vertices, bar.triangles());
+  const TriangleMesh squeezed(vertices, bar.triangles());
   const SurfaceAlignment alignment = AlignSurfaces(
-      SampleSurface(bar, 1000, 1), SampleSurface(stub, 1000, 1), {});
+      SampleSurface(bar, 1000, 1), SampleSurface(squeezed, 1000, 1), {});
   EXPECT_LT(alignment.residual, 0.01);
   EXPECT_GT(alignment.unstretched_residual, 5.0 * alignment.residual);
   EXPECT_GT(CalcDissimilarity(alignment), 2.0 * alignment.residual);
