@@ -55,8 +55,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
       const int workers =
           std::min(CountThreads(), static_cast<int>(group.size()));
       ParallelFor(workers, [&](int worker) {
-        // The working mesh: what was decimated away is far below the pieces' 1
-        // mm.
+        // The working mesh; the pieces stand out by up to 1 mm anyhow.
         GraspSimulator simulator(hand, meshes.work, PushTest());
         for (size_t i = static_cast<size_t>(worker); i < group.size();
              i += static_cast<size_t>(workers)) {

@@ -265,6 +265,7 @@ def counts(database):
 
 # Only the helper reads a mesh; neither it nor the program follows it elsewhere.
 def test_no_file_is_opened_that_a_mesh_refers_to(binary, database, tmp_path):
+    # Some containers forbid it; decode_test's probe shows it from inside.
     if subprocess.run(["strace", "true"], capture_output=True).returncode:
         pytest.skip("this machine does not permit ptrace")
     secret = tmp_path / "tell-nobody"
