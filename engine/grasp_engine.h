@@ -32,6 +32,8 @@ struct GraspSpace {
   /** Per grasp and label: PartSurfaces::CalcClearances() on the example. */
   std::vector<std::vector<double>> clearances;
   double coverage{0.0};  ///< Share of (approach direction) bins reached, 0..1.
+  /** Of all that learning took, the configuration space's; not reproducible. */
+  double configuration_space_seconds{0.0};
 
   bool operator==(const GraspSpace&) const = default;
 };
@@ -67,8 +69,10 @@ struct TransferRecord {
   double open_close_epsilon_whole{0.0};  ///< Baseline; 0 when it fails.
   std::vector<double> transferred_clearances;  ///< As GraspSpace has them.
   std::vector<double> assembled_clearances;
-  double robust{0.0};       ///< Share of 32 perturbed copies that stay stable.
-  double penetration{0.0};  ///< Deepest overlap of hand and object, m.
+  Robustness robust;             ///< Of 32 perturbed copies.
+  double penetration{0.0};       ///< Deepest overlap of hand and object, m.
+  double transfer_seconds{0.0};  ///< Of one core; not reproducible.
+  double assembly_seconds{0.0};  ///< Likewise.
 };
 
 /** Sec. V-A: how the example's part lies on the novel one. */

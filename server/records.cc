@@ -63,6 +63,10 @@ std::map<std::string, double> NameClearances(
   return named;
 }
 
+std::string MakeCoreStage(const std::string& stage, const std::string& label) {
+  return stage + " of " + label + ", core";
+}
+
 std::string MakeGraspId(const std::string& origin_id, GraspStage stage,
                         int index) {
   return MakeContentId("grasp " + origin_id + " " + ToString(stage) + " " +

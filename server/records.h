@@ -174,7 +174,8 @@ struct StoredGraspSpace {
   int configurations_tried{0};
   double coverage{0.0};  ///< 0..1.
   std::vector<LearningRound> curve;
-  double seconds{0.0};  ///< It took to learn.
+  double seconds{0.0};                      ///< It took to learn …
+  double configuration_space_seconds{0.0};  ///< … the configuration space.
   std::string created_at;
 };
 
@@ -202,6 +203,7 @@ struct StoredGrasp {
   double example_epsilon{0.0};     ///< The source's, at the same stage.
   double open_close_epsilon{0.0};  ///< The baseline's; 0 when it fails.
   std::optional<double> robust;    ///< 0..1; unknown for learned grasps.
+  std::optional<double> grip;      ///< Likewise.
   std::optional<double> physical;  ///< 0..1; unknown until verified.
   double penetration{0.0};         ///< m.
   /** The gap, m, between the hand and each other part of the object. */
@@ -275,6 +277,10 @@ struct StoredTransfer {
   std::vector<std::pair<std::string, double>> seconds;  ///< Per stage.
   std::string created_at;
 };
+
+/** The name in StoredTransfer::seconds of what a stage took of one core for a
+ part. */
+std::string MakeCoreStage(const std::string& stage, const std::string& label);
 
 /** Everything that an answer to POST /v1/grasps tells, see codec. */
 struct TransferAnswer {

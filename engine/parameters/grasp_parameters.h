@@ -61,6 +61,33 @@ struct HybridParameters {
   bool operator==(const HybridParameters&) const = default;
 };
 
+/** What fingers and their motors bear, see CalcGripResidual(). */
+struct GripParameters {
+  double push{1.0};
+  double least_force{2.0};
+  double closing_force{5.0};
+  double holding_force{15.0};
+  double friction_share{0.8};
+  double max_residual{0.1};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("push", self.push,
+      ParameterInfo{"N", 0, 1e3, "ours: what a grip is to withstand"});
+    f("least_force", self.least_force,
+      ParameterInfo{"N", 0, 1e3, "ours: what is left of it at the least"});
+    f("closing_force", self.closing_force,
+      ParameterInfo{"N", 0, 1e3, "ours: as hard as fingers close"});
+    f("holding_force", self.holding_force,
+      ParameterInfo{"N", 0, 1e3, "BH8-280: 15 N at the fingertip"});
+    f("friction_share", self.friction_share,
+      ParameterInfo{"1", 0.01, 1, "ours: of the friction that is counted on"});
+    f("max_residual", self.max_residual,
+      ParameterInfo{"N", 1e-3, 1e3, "ours: unbalanced, and still a grip"});
+  }
+  bool operator==(const GripParameters&) const = default;
+};
+
 /** When two grasps count as two. */
 struct DistinctParameters {
   double position{0.010};

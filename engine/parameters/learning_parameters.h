@@ -39,7 +39,7 @@ struct ActiveLearningParameters {
 /** Sec. IV, grasp space by particle swarm optimisation. */
 struct SwarmParameters {
   int particles{200};
-  int iterations{120};
+  int iterations{240};
   double acceleration{2.05};
   double max_step{0.02};
   double max_turn{0.35};
@@ -48,7 +48,10 @@ struct SwarmParameters {
   bool niches{true};
   bool hold_on_whole{true};
   double min_robustness{0.5};
+  double min_grip{0.75};
   int robust_copies{8};
+  double grip_weight{10.0};
+  double near_share{0.5};
   int target_grasps{300};
 
   template <class Self, class F>
@@ -76,9 +79,16 @@ struct SwarmParameters {
     f("min_robustness", self.min_robustness,
       ParameterInfo{"1", 0, 1,
                     "ours: share of perturbed copies that must hold"});
+    f("min_grip", self.min_grip,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of them that the motors must hold, too"});
     f("robust_copies", self.robust_copies,
       ParameterInfo{"1", 1, 1000,
                     "ours: copies while learning; 32 in reports"});
+    f("grip_weight", self.grip_weight,
+      ParameterInfo{"1/N", 0, 1e6, "ours: of the residual, beside Eq. (1)"});
+    f("near_share", self.near_share,
+      ParameterInfo{"1", 0, 1, "ours: restarts near a grasp that was found"});
     f("target_grasps", self.target_grasps,
       ParameterInfo{"1", 1, 1e5, "ours: stop when so many distinct are found"});
   }

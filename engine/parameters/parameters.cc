@@ -16,6 +16,10 @@ Parameters MakePaperParameters() {
   p.swarm.niches = false;
   p.swarm.hold_on_whole = false;
   p.swarm.min_robustness = 0.0;
+  p.swarm.iterations = 120;
+  p.swarm.min_grip = 0.0;
+  p.swarm.grip_weight = 0.0;
+  p.swarm.near_share = 0.0;
   p.swarm.patience = p.swarm.iterations;
   p.mapping.affine = false;
   p.mapping.warp_steps = 0;
@@ -24,6 +28,8 @@ Parameters MakePaperParameters() {
   p.replan.iterations = 300;
   p.replan.patience = 300;
   p.replan.move_wrist = false;
+  p.replan.grip_weight = 0.0;
+  p.replan.grip_copies = 0;
   return p;
 }
 

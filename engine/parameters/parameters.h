@@ -14,6 +14,7 @@ struct Parameters {
   SegmentationParameters segmentation;
   ContactParameters contact;
   HybridParameters hybrid;
+  GripParameters grip;
   ActiveLearningParameters active_learning;
   SwarmParameters swarm;
   DistinctParameters distinct;
@@ -27,6 +28,7 @@ struct Parameters {
     f("segmentation", self.segmentation);
     f("contact", self.contact);
     f("hybrid", self.hybrid);
+    f("grip", self.grip);
     f("active_learning", self.active_learning);
     f("swarm", self.swarm);
     f("distinct", self.distinct);

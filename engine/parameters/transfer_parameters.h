@@ -122,6 +122,10 @@ struct ReplanParameters {
   bool move_wrist{true};
   double trust_translation{0.010};
   double trust_rotation{0.17453292519943295};
+  double grip_weight{10.0};
+  int grip_copies{8};
+  double enough_grip{0.9};
+  int grip_cycles{8};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -164,6 +168,17 @@ struct ReplanParameters {
     f("trust_rotation", self.trust_rotation,
       ParameterInfo{"rad", 0, 0.35,
                     "ours: wrist turn; section 8 allows 20 deg"});
+    f("grip_weight", self.grip_weight,
+      ParameterInfo{"1/N", 0, 1e6, "ours: of the residual, beside Eq. (6)"});
+    f("grip_copies", self.grip_copies,
+      ParameterInfo{"1", 0, 1000,
+                    "ours: perturbed copies that choose between grasps; 0: "
+                    "eps chooses"});
+    f("enough_grip", self.enough_grip,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of them that the motors hold, to stop at"});
+    f("grip_cycles", self.grip_cycles,
+      ParameterInfo{"1", 0, 1000, "ours: annealings at most to get there"});
   }
   bool operator==(const ReplanParameters&) const = default;
 };

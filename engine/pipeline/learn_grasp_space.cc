@@ -1,3 +1,4 @@
+#include <chrono>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -26,11 +27,15 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
 
   // Sec. IV: approximate the configuration space …
   context.ReportProgress("configuration space", 0.05);
+  const auto start = ExecutionContext::Clock::now();
   const ConfigurationSpace space(hand, part);
   GRASPDB_TRY(learned,
               LearnConfigurationSpace(
                   space, parameters.active_learning,
                   DeriveSeed(request.seed, {kConfigurationSpace}), context));
+
+  const std::chrono::duration<double> learning =
+      ExecutionContext::Clock::now() - start;
 
   // … and search it for grasps from its boundary.
   ExecutionContext swarm_context(
@@ -52,6 +57,7 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
   }
   result.configurations_tried = found.configurations_tried;
   result.coverage = found.coverage;
+  result.configuration_space_seconds = learning.count();
   for (Grasp& grasp : result.grasps) {
     grasp.quality.hybrid = CalcHybrid(hand, grasp, part, parameters);
     grasp.quality.volume = CalcWrenchVolume(

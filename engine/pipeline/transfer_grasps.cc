@@ -6,6 +6,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
+#include "engine/base/thread_clock.h"
 #include "engine/geometry/surface_sampling.h"
 #include "engine/grasp_engine.h"
 #include "engine/pipeline/part_clearance.h"
@@ -199,12 +200,15 @@ class Transferrer {
     }
 
     // Sec. V-B: a stable grasp of the part …
+    const double start = ThreadSeconds();
     ReplanResult on_part = Replan(hand_, task, *pair.solid_N, parameters_,
                                   DeriveSeed(request_.seed, {kReplan, p, s}));
+    const double replanned = ThreadSeconds();
+    record.transfer_seconds = replanned - start;
     record.transfer = on_part.outcome;
     record.assembly = on_part.outcome;
     if (!on_part.grasp) return;
-    record.transferred = Complete(std::move(*on_part.grasp), *pair.solid_N);
+    record.transferred = Complete(*on_part.grasp, *pair.solid_N);
     record.transferred_clearances =
         parts_N_.CalcClearances(hand_, record.transferred->configuration);
     if (!request_.assemble && !KeepsFree(record.transferred_clearances)) {
@@ -217,8 +221,9 @@ class Transferrer {
     // … and Sec. V-C: of the whole object.
     if (request_.assemble) {
       ReplanResult on_whole =
-          Assemble(hand_, task, *record.transferred, *whole_N_, parameters_,
+          Assemble(hand_, task, *on_part.grasp, *whole_N_, parameters_,
                    DeriveSeed(request_.seed, {kAssemble, p, s}));
+      record.assembly_seconds = ThreadSeconds() - replanned;
       record.assembly = on_whole.outcome;
       if (!on_whole.grasp) return;
       record.assembled_clearances =
@@ -227,7 +232,7 @@ class Transferrer {
         record.assembly = TransferOutcome::kNotKeptFree;
         return;
       }
-      record.assembled = Complete(std::move(*on_whole.grasp), *whole_N_);
+      record.assembled = Complete(*on_whole.grasp, *whole_N_);
     }
     const Grasp& last =
         record.assembled ? *record.assembled : *record.transferred;
@@ -268,7 +273,8 @@ class Transferrer {
   }
 
   // Fills in what is not needed while searching.
-  Grasp Complete(Grasp grasp, const Solid& solid) const {
+  Grasp Complete(const Grasp& found, const Solid& solid) const {
+    Grasp grasp = TimeFingers(hand_, found, solid, parameters_);
     grasp.quality.hybrid = CalcHybrid(hand_, grasp, solid, parameters_);
     grasp.quality.volume = CalcWrenchVolume(
         CalcContactWrenches(grasp.contacts, solid.mass(), parameters_.contact));

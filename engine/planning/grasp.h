@@ -18,6 +18,14 @@ struct GraspQuality {
   bool operator==(const GraspQuality&) const = default;
 };
 
+/** Shares of perturbed copies of a grasp, 0..1. */
+struct Robustness {
+  double stable{0.0};   ///< Those that stay stable …
+  double gripped{0.0};  ///< … and those of them that the motors hold, too.
+
+  bool operator==(const Robustness&) const = default;
+};
+
 /** A closed, stable, collision-free hand on an object, and how to get there:
  move the hand with joints q_pregrasp along approach_O by retreat to X_OH, then
  close until the fingers stop at configuration.q. */

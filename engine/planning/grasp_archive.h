@@ -23,6 +23,8 @@ class GraspArchive {
   bool Insert(const Grasp& grasp);
 
   int size() const { return static_cast<int>(grasps_.size()); }
+  /** In the order in which they were found. */
+  const std::vector<Grasp>& grasps() const { return grasps_; }
   /** In order of ε, the largest first. */
   std::vector<Grasp> MakeSorted() const;
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/random.h"
 #include "engine/geometry/surface_patch.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/quality/contact_extraction.h"
 #include "engine/quality/epsilon_quality.h"
+#include "engine/quality/grip_balance.h"
 #include "engine/quality/hybrid_measure.h"
 #include "engine/quality/wrench_space.h"
 
@@ -17,7 +19,9 @@ namespace {
 constexpr double kRobustShift = 0.003;              // m
 constexpr double kRobustTurn = 3.0 * M_PI / 180.0;  // rad
 constexpr double kRobustFriction = 0.2;
-constexpr double kApproachStep = 0.0005;       // m
+constexpr double kLeastTravel = 0.2;      // Of a motor, rad, see TimeFingers().
+constexpr double kSameJoints = 0.01;      // rad; section "reachable".
+constexpr double kApproachStep = 0.0005;  // m
 constexpr double kPenetrationSpacing = 0.001;  // m
 
 // Visits patches of at most the spacing that may lie inside the solid.
@@ -106,23 +110,77 @@ bool IsReachable(const HandShape& hand, const Grasp& grasp,
                           kApproachStep) == 1.0;
 }
 
-double CalcRobustness(const HandShape& hand, const Grasp& grasp,
-                      const Solid& solid, const Parameters& parameters,
-                      uint64_t seed, int copies) {
+Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
+                  const Parameters& parameters) {
+  const HandModel& model = hand.model();
+  // How far each motor turns until its finger's first joint is blocked.
+  std::vector<double> travel;
+  double least = std::numeric_limits<double>::infinity();
+  for (const HandActuator& actuator : model.actuators()) {
+    const auto first = static_cast<size_t>(actuator.joints.front());
+    const auto j = static_cast<Eigen::Index>(first);
+    travel.push_back((grasp.configuration.q[j] - grasp.q_pregrasp[j]) /
+                     model.joints()[first].ratio);
+    if (actuator.closes) least = std::min(least, travel.back());
+  }
+  least = std::max(least, kLeastTravel);
+  Eigen::VectorXd q = grasp.q_pregrasp;
+  for (size_t a = 0; a < travel.size(); ++a) {
+    const HandActuator& actuator = model.actuators()[a];
+    if (!actuator.closes) continue;
+    for (const int j : actuator.joints) {
+      q[j] += model.joints()[static_cast<size_t>(j)].ratio *
+              std::max(0.0, travel[a] - least);
+    }
+  }
+  EvaluatedGrasp timed =
+      CloseAndJudge(hand, grasp.configuration.X_OH, q, solid, parameters);
+  if (!timed.ok() ||
+      (timed.grasp.configuration.q - grasp.configuration.q)
+              .cwiseAbs()
+              .maxCoeff() > kSameJoints ||
+      !IsReachable(hand, timed.grasp, solid)) {
+    return grasp;
+  }
+  Grasp result = grasp;
+  result.q_pregrasp = q;
+  return result;
+}
+
+double CalcGrip(const HandShape& hand, const Grasp& grasp,
+                const MassProperties& mass, const Parameters& parameters,
+                double enough) {
+  return CalcGripResidual(hand, grasp.configuration.X_OH,
+                          CalcLinkPoses(hand.model(), grasp.configuration.q),
+                          grasp.contacts, mass, parameters.contact,
+                          parameters.grip, enough);
+}
+
+Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
+                          const Solid& solid, const Parameters& parameters,
+                          uint64_t seed, int copies, double least_gripped) {
   Random random(seed);
   int stable = 0;
+  int gripped = 0;
   for (int i = 0; i < copies; ++i) {
+    if (gripped + copies - i < least_gripped * copies) break;
     RigidTransform X_OH = grasp.configuration.X_OH;
     X_OH.translation += kRobustShift * random.NextInUnitBall();
     X_OH.rotation = X_OH.rotation * random.NextRotationWithin(kRobustTurn);
     Parameters perturbed = parameters;
     perturbed.contact.friction *=
         1.0 + random.NextUniform(-kRobustFriction, kRobustFriction);
-    stable += CloseAndJudge(hand, X_OH, grasp.q_pregrasp, solid, perturbed,
-                            Precision::kEstimated)
-                  .ok();
+    const EvaluatedGrasp copy = CloseAndJudge(
+        hand, X_OH, grasp.q_pregrasp, solid, perturbed, Precision::kEstimated);
+    if (!copy.ok()) continue;
+    ++stable;
+    const double enough = parameters.grip.max_residual;
+    if (CalcGrip(hand, copy.grasp, solid.mass(), perturbed, enough) <= enough) {
+      ++gripped;
+    }
   }
-  return static_cast<double>(stable) / copies;
+  return {static_cast<double>(stable) / copies,
+          static_cast<double>(gripped) / copies};
 }
 
 double CalcPenetration(const HandShape& hand,

@@ -50,15 +50,33 @@ double CalcHybrid(const HandShape& hand, const Grasp& grasp, const Solid& solid,
  grasp.approach_O, without touching the solid. */
 bool IsReachable(const HandShape& hand, const Grasp& grasp, const Solid& solid);
 
+/** The grasp with each finger, before it closes, as near to where it meets the
+ object as the others: at equal speed all meet it together, and none pushes it
+ away. The finger that meets it first stays as open as it was, but none comes
+ nearer than 0.2 of its motor's travel. Unchanged where the hand could then not
+ come along its approach, or the fingers would end elsewhere. */
+Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
+                  const Parameters& parameters);
+
+/** CalcGripResidual() of a grasp's contacts on an object with these mass
+ properties, N. */
+double CalcGrip(const HandShape& hand, const Grasp& grasp,
+                const MassProperties& mass, const Parameters& parameters,
+                double enough = 1e300);
+
 /** Copies that a reported robustness is the share of. */
 inline constexpr int kRobustCopies = 32;
 
-/** The share of `copies` that stay stable, the hand moved uniformly within a
- 3 mm ball and turned within 3 degrees, friction changed within ±20 %, fingers
- closed again, by estimate, from the pre-grasp. */
-double CalcRobustness(const HandShape& hand, const Grasp& grasp,
-                      const Solid& solid, const Parameters& parameters,
-                      uint64_t seed, int copies = kRobustCopies);
+/** Of `copies`, the hand moved uniformly within a 3 mm ball and turned within 3
+ degrees, friction changed within ±20 %, fingers closed again, by estimate, from
+ the pre-grasp. Gripped are those whose CalcGrip() is at most
+ grip.max_residual.
+ @param least_gripped  Once the share cannot reach this any more, the shares so
+   far. */
+Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
+                          const Solid& solid, const Parameters& parameters,
+                          uint64_t seed, int copies = kRobustCopies,
+                          double least_gripped = 0.0);
 
 /** The deepest that a point of either surface lies inside the other solid, m,
  surfaces sampled every millimetre near each other; 0 without overlap. */

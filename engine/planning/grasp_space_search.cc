@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -21,6 +22,8 @@ namespace {
 constexpr int kNiches = 26;
 // Particles pass through nothing thicker than this, metres.
 constexpr double kMoveStep = 0.001;
+// The residual, N, that stands for no grip at all in a particle's measure.
+constexpr double kNoGrip = 5.0;
 
 // The 26 directions with coordinates -1, 0, 1; the nearest one's index.
 int FindNiche(const Eigen::Vector3d& direction) {
@@ -107,6 +110,7 @@ class Swarm {
         if (particle.found) archive_.Insert(*particle.found);
       }
       UpdateNicheBests();
+      SortFoundByNiche();
       context.ReportProgress(
           "swarm",
           std::max(
@@ -125,12 +129,25 @@ class Swarm {
   }
 
  private:
-  // From the classifier's seeds first, then from aimed samples around the part.
+  // Near what was found, from the classifier's seeds as long as there are new
+  // ones, near them, or from aimed samples around the part.
   void Restart(Particle& particle, int iteration, int index, Random& random) {
     const size_t next =
         static_cast<size_t>(iteration) * swarm_.particles + index;
+    const bool near = random.NextUniform() < swarm_.near_share;
     const bool aimed = random.NextUniform() < swarm_.aimed_share;
-    if (!aimed && next < seeds_.size()) {
+    if (near && archive_.size() > 0) {
+      // Any approach that has led to one is as likely as another.
+      const std::vector<int>& niche = found_by_niche_[static_cast<size_t>(
+          random.NextIndex(static_cast<int>(found_by_niche_.size())))];
+      const Grasp& found =
+          archive_.grasps()[static_cast<size_t>(niche[static_cast<size_t>(
+              random.NextIndex(static_cast<int>(niche.size())))])];
+      particle.here =
+          space_.Perturb({found.configuration.X_OH,
+                          hand_.model().CalcActuators(found.q_pregrasp)},
+                         swarm_.max_step, swarm_.max_turn, random);
+    } else if (!aimed && next < seeds_.size()) {
       particle.here = seeds_[next];
     } else if (!aimed && !seeds_.empty()) {
       particle.here = space_.Perturb(
@@ -221,14 +238,24 @@ class Swarm {
         evaluated.failure == GraspFailure::kFingerCollision) {
       return;
     }
+    const double grip =
+        evaluated.ok() && UsesGrip()
+            ? std::min(kNoGrip, CalcGrip(hand_, evaluated.grasp,
+                                         obstacle_.mass(), parameters_))
+            : kNoGrip;
     const double measure =
-        CalcHybrid(hand_, evaluated.grasp, part_, parameters_);
+        CalcHybrid(hand_, evaluated.grasp, part_, parameters_) +
+        swarm_.grip_weight * grip;
     if (measure < particle.best_measure) {
       particle.best_measure = measure;
       particle.best = particle.here;
       particle.stale = 0;
     }
-    if (!evaluated.ok() || !IsRobust(evaluated.grasp, seed)) return;
+    if (!evaluated.ok() ||
+        (swarm_.min_grip > 0.0 && grip > parameters_.grip.max_residual) ||
+        !IsRobust(evaluated.grasp, seed)) {
+      return;
+    }
     evaluated = CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
     if (evaluated.ok() && HoldsOnWhole(evaluated.grasp) &&
         IsReachable(hand_, evaluated.grasp, obstacle_)) {
@@ -248,10 +275,29 @@ class Swarm {
                                  parameters_.transfer.min_opposed_contacts);
   }
 
+  bool UsesGrip() const {
+    return swarm_.min_grip > 0.0 || swarm_.grip_weight > 0.0;
+  }
+
   bool IsRobust(const Grasp& grasp, uint64_t seed) const {
-    return swarm_.min_robustness == 0.0 ||
-           CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
-                          swarm_.robust_copies) >= swarm_.min_robustness;
+    if (swarm_.min_robustness == 0.0 && swarm_.min_grip == 0.0) return true;
+    const Robustness robustness =
+        CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
+                       swarm_.robust_copies, swarm_.min_grip);
+    return robustness.stable >= swarm_.min_robustness &&
+           robustness.gripped >= swarm_.min_grip;
+  }
+
+  void SortFoundByNiche() {
+    std::map<int, std::vector<int>> niches;
+    for (int i = 0; i < archive_.size(); ++i) {
+      const Grasp& grasp = archive_.grasps()[static_cast<size_t>(i)];
+      niches[FindNiche(grasp.approach_O)].push_back(i);
+    }
+    found_by_niche_.clear();
+    for (auto& [niche, found] : niches) {
+      found_by_niche_.push_back(std::move(found));
+    }
   }
 
   void UpdateNicheBests() {
@@ -278,6 +324,8 @@ class Swarm {
   const uint64_t seed_;
   const double constriction_;
   GraspArchive archive_;
+  // Indices into the archive, for each niche that has any.
+  std::vector<std::vector<int>> found_by_niche_;
   std::vector<int> niche_best_;  // Particle with the best measure, or -1.
   std::vector<Particle> particles_;
   std::vector<HandPosture> leaders_;  // Each particle's best so far.

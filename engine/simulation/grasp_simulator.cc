@@ -232,8 +232,9 @@ ModelPointer Compile(const std::string& xml) {
 }  // namespace
 
 double PhysicalVerdict::CalcScore() const {
-  if (!settled) return 0.0;
-  return static_cast<double>(std::count(held.begin(), held.end(), true)) / 6.0;
+  if (!settled || held.empty()) return 0.0;
+  return static_cast<double>(std::count(held.begin(), held.end(), true)) /
+         static_cast<double>(held.size());
 }
 
 struct GraspSimulator::Impl {
@@ -346,11 +347,15 @@ struct GraspSimulator::Impl {
             double& shift, double& angle) const {
     shift = std::max(shift, (CentreOf(*data) - centre).norm());
     angle = std::max(angle, TurnOf(*data).angularDistance(turn));
-    // MuJoCo starts anew from a state that has blown up: that is lost, too.
+    return BlownUp() || !(shift < test.max_shift && angle < test.max_turn);
+  }
+
+  // MuJoCo starts anew from a state that has blown up: that is lost, too.
+  bool BlownUp() const {
     for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
       if (data->warning[bad].number > 0) return true;
     }
-    return !(shift < test.max_shift && angle < test.max_turn);
+    return false;
   }
 
   bool Settle(const Grasp& grasp, PhysicalVerdict& verdict) {
@@ -374,19 +379,49 @@ struct GraspSimulator::Impl {
     return rest >= test.settle_seconds;
   }
 
-  bool Push(const Eigen::Vector3d& direction, double& shift, double& angle) {
+  // Each push from the settled state, until it is lost.
+  void PushApart(PhysicalVerdict& verdict) {
+    for (const Eigen::Vector3d& direction : test.pushes) {
+      mj_copyData(data.get(), model.get(), settled.get());
+      const Eigen::Vector3d centre = CentreOf(*data);
+      const Eigen::Quaterniond turn = TurnOf(*data);
+      double shift = 0.0;
+      double angle = 0.0;
+      bool held = true;
+      Push(direction, [&] {
+        held = !Lost(centre, turn, shift, angle);
+        return held;
+      });
+      verdict.shift.push_back(shift);
+      verdict.turn.push_back(angle);
+      verdict.held.push_back(held);
+    }
+  }
+
+  // One push after another; what counts is where the object is at last.
+  void PushInTurn(PhysicalVerdict& verdict) {
     mj_copyData(data.get(), model.get(), settled.get());
     const Eigen::Vector3d centre = CentreOf(*data);
     const Eigen::Quaterniond turn = TurnOf(*data);
+    for (const Eigen::Vector3d& direction : test.pushes) {
+      Push(direction, [&] { return !BlownUp(); });
+    }
+    verdict.shift.push_back((CentreOf(*data) - centre).norm());
+    verdict.turn.push_back(TurnOf(*data).angularDistance(turn));
+    verdict.held.push_back(verdict.shift.back() < test.max_shift && !BlownUp());
+  }
+
+  // @param goes_on  Asked after each step.
+  template <class F>
+  void Push(const Eigen::Vector3d& direction, F&& goes_on) {
     const double end = test.ramp_seconds + test.push_seconds;
     for (double t = 0.0; t < end; t += test.time_step) {
       const Eigen::Vector3d force =
           std::min(1.0, t / test.ramp_seconds) * test.force * direction;
       std::copy_n(force.data(), 3, &data->xfrc_applied[6 * object]);
       mj_step(model.get(), data.get());
-      if (Lost(centre, turn, shift, angle)) return false;
+      if (!goes_on()) return;
     }
-    return true;
   }
 
   std::shared_ptr<const HandModel> hand;
@@ -413,13 +448,37 @@ PhysicalVerdict GraspSimulator::Judge(const Grasp& grasp) {
   PhysicalVerdict verdict;
   verdict.settled = impl_->Settle(grasp, verdict);
   if (!verdict.settled) return verdict;
-  for (int i = 0; i < 6; ++i) {
-    const auto k = static_cast<size_t>(i);
-    const Eigen::Vector3d direction =
-        (i % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(i / 2);
-    verdict.held[k] = impl_->Push(direction, verdict.shift[k], verdict.turn[k]);
+  if (impl_->test.one_episode) {
+    impl_->PushInTurn(verdict);
+  } else {
+    impl_->PushApart(verdict);
   }
   return verdict;
+}
+
+PushTest MakeNetDisplacementTest() {
+  PushTest test;
+  test.name =
+      "net displacement after 1 N along +x +y +z -x -y -z in one episode, "
+      "0.1 kg, friction 3, < 2 cm";
+  test.pushes = {Eigen::Vector3d::UnitX(),  Eigen::Vector3d::UnitY(),
+                 Eigen::Vector3d::UnitZ(),  -Eigen::Vector3d::UnitX(),
+                 -Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitZ()};
+  test.one_episode = true;
+  test.friction = 3.0;
+  return test;
+}
+
+PushTest MakeLiftTest() {
+  PushTest test;
+  test.name =
+      "0.5 kg against gravity along -z for 2 s, friction 0.5, < 2 cm and "
+      "< 15 degrees";
+  test.mass = 0.5;
+  test.force = test.mass * 9.81;
+  test.push_seconds = 2.0;
+  test.pushes = {-Eigen::Vector3d::UnitZ()};
+  return test;
 }
 
 const char* SimulatorVersion() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <utility>
 
@@ -20,6 +21,8 @@ constexpr double kWithinLimits = 0.98;
 // Annealings that follow one another draw from nearer and from farther around,
 // shares of the trust region.
 constexpr double kReaches[] = {1.0, 0.5, 1.5};
+// The residual, N, that stands for no grip at all in the objective.
+constexpr double kNoGrip = 5.0;
 // How far the hand's frame reaches when the wrist is fitted, metres.
 constexpr double kFrameLength = 0.05;
 
@@ -78,6 +81,7 @@ class Replanner {
         solid_(solid),
         parameters_(parameters),
         replan_(parameters.replan),
+        seed_(seed),
         random_(seed) {}
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
@@ -86,6 +90,14 @@ class Replanner {
     do {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles);
+    // Every second one goes on from the best grasp so far.
+    for (cycle = 0;
+         best_ && replan_.grip_copies > 0 &&
+         merit_.gripped < replan_.enough_grip && cycle < replan_.grip_cycles;
+         ++cycle) {
+      Anneal(cycle % 2 == 0 ? best_start_ : ranked[cycle / 2 % ranked.size()],
+             kReaches[cycle % 3]);
+    }
     if (!best_) return {furthest_, std::nullopt};
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
@@ -152,7 +164,7 @@ class Replanner {
     for (int i = 0; i < replan_.iterations && since_gain < replan_.patience;
          ++i) {
       const double cooling = static_cast<double>(i) / replan_.iterations;
-      const double epsilon_before = BestEpsilon();
+      const int gains_before = num_gains_;
       const std::optional<Sample> next =
           DrawFree(here, reach * (1.0 - 0.8 * cooling));
       if (next) {
@@ -169,12 +181,40 @@ class Replanner {
         }
       }
       // Patience counts once there is something to be content with.
-      since_gain =
-          best_ && BestEpsilon() == epsilon_before ? since_gain + 1 : 0;
+      since_gain = best_ && num_gains_ == gains_before ? since_gain + 1 : 0;
     }
   }
 
-  double BestEpsilon() const { return best_ ? best_->quality.epsilon : 0.0; }
+  // What chooses between grasps: how sure the grip is, then eps.
+  struct Merit {
+    double gripped{-1.0};  // Share of perturbed copies; -1: no grasp.
+    double epsilon{0.0};
+
+    auto operator<=>(const Merit&) const = default;
+  };
+
+  Merit CalcMerit(const Grasp& grasp) const {
+    Merit merit{0.0, grasp.quality.epsilon};
+    if (replan_.grip_copies == 0) return merit;
+    merit.gripped = CalcRobustness(hand_, grasp, solid_, parameters_, seed_,
+                                   replan_.grip_copies, merit_.gripped)
+                        .gripped;
+    return merit;
+  }
+
+  // Whether it is worth a closer look: without copies only by eps, else by
+  // whether it is gripped itself.
+  bool MayBeBetter(const Grasp& grasp, double grip) const {
+    if (!best_) return true;
+    const bool higher = grasp.quality.epsilon > merit_.epsilon;
+    if (replan_.grip_copies == 0) return higher;
+    if (merit_.gripped >= 1.0) {
+      return higher && grip <= parameters_.grip.max_residual;
+    }
+    return merit_.gripped > 0.0
+               ? grip <= parameters_.grip.max_residual
+               : higher || grip <= parameters_.grip.max_residual;
+  }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
   // value of Eq. (6), or infinity in collision.
@@ -190,20 +230,35 @@ class Replanner {
     }
     const Grasp& grasp = evaluated.grasp;
     if (q_closed != nullptr) *q_closed = grasp.configuration.q;
-    if (evaluated.ok() && grasp.quality.epsilon > BestEpsilon() &&
-        Counts(grasp)) {
+    const bool uses_grip = replan_.grip_weight > 0.0 || replan_.grip_copies > 0;
+    const double grip =
+        evaluated.ok() && uses_grip
+            ? std::min(kNoGrip,
+                       CalcGrip(hand_, grasp, solid_.mass(), parameters_))
+            : kNoGrip;
+    if (evaluated.ok() && MayBeBetter(grasp, grip) && Counts(grasp)) {
       // What is kept is exact.
       const EvaluatedGrasp exact =
           CloseAndJudge(hand_, sample.X_NH, q, solid_, parameters_);
       Note(ToOutcome(exact.failure));
-      if (exact.ok() && exact.grasp.quality.epsilon > BestEpsilon() &&
-          Counts(exact.grasp) && CanBeReached(exact.grasp)) {
-        best_ = exact.grasp;
+      if (exact.ok() && Counts(exact.grasp)) {
+        const Merit merit = CalcMerit(exact.grasp);
+        if (merit > merit_ && CanBeReached(exact.grasp)) {
+          best_ = exact.grasp;
+          merit_ = merit;
+          best_start_ = {sample, CalcValue(exact.grasp, grip)};
+          ++num_gains_;
+        }
       }
     }
+    return CalcValue(grasp, grip);
+  }
+
+  double CalcValue(const Grasp& grasp, double grip) const {
     return CalcReplanObjective(CalcGoals(grasp), grasp.configuration.q, task_.q,
                                grasp.quality.epsilon,
-                               parameters_.hybrid.epsilon_floor, replan_);
+                               parameters_.hybrid.epsilon_floor, replan_) +
+           replan_.grip_weight * grip;
   }
 
   bool Counts(const Grasp& grasp) {
@@ -277,8 +332,12 @@ class Replanner {
   const Solid& solid_;
   const Parameters& parameters_;
   const ReplanParameters& replan_;
+  const uint64_t seed_;
   Random random_;
   std::optional<Grasp> best_;
+  Merit merit_;       // Of the best …
+  Rated best_start_;  // … and how it came about.
+  int num_gains_{0};
   TransferOutcome furthest_{TransferOutcome::kPalmCollision};
 };
 

@@ -89,6 +89,7 @@ class RemoteBackend : public Backend {
     const char* sort = wanted.sort == Sort::kEpsilon  ? "epsilon"
                        : wanted.sort == Sort::kHybrid ? "hybrid"
                        : wanted.sort == Sort::kRobust ? "robust"
+                       : wanted.sort == Sort::kMerit  ? "merit"
                                                       : "newest";
     QueryText query;
     query.Add("category", wanted.category)

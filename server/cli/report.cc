@@ -50,8 +50,8 @@ std::string List(const Json& values, int digits) {
 }
 
 std::string FormatGrasps(const Json& grasps) {
-  std::vector<Row> rows{{"part", "stage", "eps", "robust", "position, m",
-                         "joints, rad", "grasp"}};
+  std::vector<Row> rows{{"part", "stage", "eps", "robust", "grip",
+                         "position, m", "joints, rad", "grasp"}};
   for (const Json& grasp : grasps) {
     Json joints = Json::array();
     for (const auto& [name, angle] : grasp["joints"].items()) {
@@ -60,6 +60,7 @@ std::string FormatGrasps(const Json& grasps) {
     rows.push_back({Text(grasp["part"]), Text(grasp["stage"]),
                     Number(grasp["quality"]["epsilon"], 3),
                     Number(grasp["quality"]["robust"], 2),
+                    Number(grasp["quality"]["grip"], 2),
                     List(grasp["X_OH"]["position"], 3), List(joints, 2),
                     Text(grasp["id"])});
   }

@@ -46,6 +46,7 @@ Json EncodeQuality(const StoredGrasp& grasp) {
   json["open_close_epsilon"] =
       learned ? Json(nullptr) : Json(grasp.open_close_epsilon);
   json["robust"] = OrNull(grasp.robust);
+  json["grip"] = OrNull(grasp.grip);
   json["physical"] = OrNull(grasp.physical);
   return json;
 }

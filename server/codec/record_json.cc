@@ -242,6 +242,7 @@ std::string ToJson(const StoredGraspSpace& space) {
     json["curve"].push_back(std::move(entry));
   }
   json["seconds"] = space.seconds;
+  json["configuration_space_seconds"] = space.configuration_space_seconds;
   json["parameters"] = Parsed(space.parameters);
   json["provenance"]["engine_version"] = space.engine_version;
   json["provenance"]["parameters_hash"] = space.parameters_hash;

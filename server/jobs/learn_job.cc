@@ -44,6 +44,15 @@ Result<std::vector<Lesson>> ListLessons(const Store& store,
   return lessons;
 }
 
+// What learning depends on: the rest does not make another grasp space.
+Parameters SelectForLearning(const Parameters& parameters) {
+  Parameters selected = parameters;
+  selected.segmentation = {};
+  selected.mapping = {};
+  selected.replan = {};
+  return selected;
+}
+
 StoredGraspSpace DescribeLesson(const Lesson& lesson,
                                 const StoredObject& object,
                                 const LearnOrder& order) {
@@ -53,7 +62,7 @@ StoredGraspSpace DescribeLesson(const Lesson& lesson,
   record.part_label = lesson.part.label;
   record.category = object.category;
   record.hand = lesson.hand;
-  record.parameters = ParametersToJson(order.parameters);
+  record.parameters = ParametersToJson(SelectForLearning(order.parameters));
   record.parameters_hash = MakeContentId(record.parameters);
   record.seed = order.seed;
   record.engine_version = EngineVersion();
@@ -122,13 +131,14 @@ Result<std::vector<StoredGraspSpace>> Service::LearnObject(
     request.hand = hand;
     request.part_E = lesson.solid;
     request.whole_E = {meshes.work, meshes.work_labels};
-    request.parameters = order.parameters;
+    request.parameters = SelectForLearning(order.parameters);
     request.seed = order.seed;
     request.threads = options_.threads;
     GRASPDB_TRY(space, Learn(request, part_context.context()));
     record.seconds =
         std::chrono::duration<double>(ExecutionContext::Clock::now() - start)
             .count();
+    record.configuration_space_seconds = space.configuration_space_seconds;
     GRASPDB_TRY(stored, store_->InsertGraspSpace(record, space));
     spaces.push_back(stored);
   }

@@ -15,6 +15,7 @@
 #include "engine/parameters/parameters.h"
 #include "engine/registration/shape_descriptor.h"
 #include "engine/simulation/grasp_simulator.h"
+#include "server/files.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -41,7 +42,7 @@ struct HandFiles {
 
 struct ServiceOptions {
   int threads{0};  ///< Of the engine; 0: as many as there are cores.
-  int64_t max_mesh_bytes{64 << 20};
+  int64_t max_mesh_bytes{kMostFileBytes};
   int64_t max_triangles{400'000};
 };
 
@@ -56,6 +57,11 @@ struct VerifyOrder {
   GraspQuery query;   ///< Which; its page is of no account.
   int64_t limit{0};   ///< Most grasps, best first; 0: all.
   bool again{false};  ///< Those as well that have a verdict.
+  PushTest test;
+  /** Whether the verdicts are stored. If not, all that are asked for are
+   * judged.
+   */
+  bool keep{true};
 };
 
 struct VerifiedGrasp {

@@ -15,7 +15,8 @@ class SubContext {
              double end)
       : context_([this, &whole, what, begin, end](const std::string& stage,
                                                   double share) {
-          whole.ReportProgress(stage.empty() ? what : what + ": " + stage,
+          const bool both = !stage.empty() && !what.empty();
+          whole.ReportProgress(what + (both ? ": " : "") + stage,
                                begin + share * (end - begin));
           if (whole.Cancelled()) context_.Cancel();
         }) {

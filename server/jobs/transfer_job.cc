@@ -119,6 +119,25 @@ std::vector<std::optional<Eigen::Vector3d>> MatchTargets(
   return matched;
 }
 
+// What both stages took of one core, by part.
+void AddCoreSeconds(const std::vector<TransferRecord>& records,
+                    const TransferPlan& plan,
+                    std::vector<std::pair<std::string, double>>& seconds) {
+  for (size_t p = 0; p < plan.novel_parts.size(); ++p) {
+    if (!plan.spaces[p]) continue;
+    double transfer = 0.0;
+    double assembly = 0.0;
+    for (const TransferRecord& record : records) {
+      if (record.part != static_cast<int>(p)) continue;
+      transfer += record.transfer_seconds;
+      assembly += record.assembly_seconds;
+    }
+    const std::string& label = plan.novel_parts[p].label;
+    seconds.emplace_back(MakeCoreStage("transfer", label), transfer);
+    seconds.emplace_back(MakeCoreStage("assembly", label), assembly);
+  }
+}
+
 // Turns the engine's records into rows.
 class RowMaker {
  public:
@@ -196,7 +215,8 @@ class RowMaker {
                                    : record.open_close_epsilon_part;
     // The record judges the last stage that was reached.
     if (whole || !record.assembled) {
-      row.robust = record.robust;
+      row.robust = record.robust.stable;
+      row.grip = record.robust.gripped;
       row.penetration = record.penetration;
     }
     row.grasp_space_id = plan_.spaces[part]->id;
@@ -316,6 +336,7 @@ Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
   for (size_t i = 0; i < result.records.size(); ++i) {
     rows.Add(result.records[i], static_cast<int>(i));
   }
+  AddCoreSeconds(result.records, plan, row.seconds);
   context.ReportProgress("store", 0.98);
   GRASPDB_TRY(stored, store_->InsertTransfer(row, rows.grasps()));
   context.ReportProgress("done", 1.0);
@@ -332,6 +353,7 @@ Result<TransferAnswer> Service::DescribeTransfer(
   GraspQuery query;
   query.transfer_id = transfer_id;
   query.stage = transfer.stage;
+  query.sort = GraspQuery::Sort::kMerit;
   do {
     const int64_t missing =
         count ? *count - std::ssize(answer.grasps) : int64_t{1000};

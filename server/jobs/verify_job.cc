@@ -22,7 +22,7 @@ Result<std::vector<Group>> CollectGroups(const Store& store,
   do {
     GRASPDB_TRY(page, store.QueryGrasps(query));
     for (StoredGrasp& grasp : page.items) {
-      if (grasp.physical && !order.again) continue;
+      if (grasp.physical && order.keep && !order.again) continue;
       if (order.limit > 0 && count == order.limit) break;
       ++count;
       Group& group = groups[{grasp.object_id, grasp.hand}];
@@ -56,7 +56,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
           std::min(CountThreads(), static_cast<int>(group.size()));
       ParallelFor(workers, [&](int worker) {
         // The working mesh; the pieces stand out by up to 1 mm anyhow.
-        GraspSimulator simulator(hand, meshes.work, PushTest());
+        GraspSimulator simulator(hand, meshes.work, order.test);
         for (size_t i = static_cast<size_t>(worker); i < group.size();
              i += static_cast<size_t>(workers)) {
           if (context.Cancelled()) return;
@@ -76,7 +76,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
       one.grasp.physical = one.verdict.CalcScore();
       scores.emplace_back(one.grasp.id, *one.grasp.physical);
     }
-    GRASPDB_TRY_VOID(store_->SetPhysical(scores));
+    if (order.keep) GRASPDB_TRY_VOID(store_->SetPhysical(scores));
     std::move(group.begin(), group.end(), std::back_inserter(verified));
   }
   return verified;

@@ -100,9 +100,10 @@ Result<GraspSearch> ReadSearch(QueryReader& query) {
   }
   using Sort = GraspQuery::Sort;
   const auto sort =
-      query.Choice("sort", {"epsilon", "hybrid", "robust", "newest"});
+      query.Choice("sort", {"epsilon", "merit", "hybrid", "robust", "newest"});
   wanted.sort = sort == "hybrid"   ? Sort::kHybrid
                 : sort == "robust" ? Sort::kRobust
+                : sort == "merit"  ? Sort::kMerit
                 : sort == "newest" ? Sort::kNewest
                                    : Sort::kEpsilon;
   wanted.page = ReadPage(query);

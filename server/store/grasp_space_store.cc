@@ -23,9 +23,9 @@ constexpr char kSpaceColumns[] =
     "SELECT s.id, s.object_id, s.part_id, s.part_label, s.category, s.hand,"
     " p.json, s.parameters_hash, s.seed, s.engine_version, s.num_grasps,"
     " s.num_support_vectors, s.configurations_tried, s.coverage, s.seconds,"
-    " s.created_at, s.rowid FROM grasp_spaces s"
+    " s.created_at, s.configuration_space_seconds, s.rowid FROM grasp_spaces s"
     " CROSS JOIN parameter_sets p ON p.hash = s.parameters_hash ";
-constexpr int kSpaceRowid = 16;
+constexpr int kSpaceRowid = 17;
 
 StoredGraspSpace MakeSpace(const Statement& row) {
   StoredGraspSpace space;
@@ -45,6 +45,7 @@ StoredGraspSpace MakeSpace(const Statement& row) {
   space.coverage = row.Double(13);
   space.seconds = row.Double(14);
   space.created_at = row.Text(15);
+  space.configuration_space_seconds = row.Double(16);
   return space;
 }
 
@@ -110,7 +111,7 @@ void InsertSpaceRow(Database& database, const StoredGraspSpace& record,
   database
       .Prepare(
           "INSERT INTO grasp_spaces VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-          " ?, ?, ?, ?, ?)")
+          " ?, ?, ?, ?, ?, ?)")
       .Bind(record.id, record.object_id, record.part_id, record.part_label,
             record.category, record.hand, record.parameters_hash, record.seed,
             record.engine_version, static_cast<int64_t>(space.grasps.size()),
@@ -118,6 +119,7 @@ void InsertSpaceRow(Database& database, const StoredGraspSpace& record,
             space.configurations_tried, space.coverage, record.seconds,
             FormatNow())
       .BindBlob(EncodeConfigurations(space.support_vectors))
+      .Bind(record.configuration_space_seconds)
       .Run();
   for (size_t i = 0; i < space.curve.size(); ++i) {
     const LearningRound& round = space.curve[i];

@@ -22,7 +22,8 @@ constexpr char kGraspColumns[] =
     " g.source_grasp_id, g.epsilon, g.volume, g.hybrid, g.robust, g.physical,"
     " g.example_epsilon, g.open_close_epsilon, g.penetration, g.data,"
     " ifnull(t.engine_version, s.engine_version),"
-    " ifnull(t.parameters_hash, s.parameters_hash), ifnull(t.seed, s.seed)"
+    " ifnull(t.parameters_hash, s.parameters_hash), ifnull(t.seed, s.seed),"
+    " g.grip, g.merit"
     " FROM grasps g CROSS JOIN grasp_spaces s ON s.id = g.grasp_space_id"
     " LEFT JOIN transfers t ON t.id = g.transfer_id ";
 
@@ -44,6 +45,7 @@ StoredGrasp MakeGrasp(Database& database, const Statement& row) {
   grasp.source_grasp_id = row.Text(11);
   grasp.grasp.quality = {row.Double(12), row.Double(13), row.Double(14)};
   grasp.robust = row.OptionalDouble(15);
+  grasp.grip = row.OptionalDouble(24);
   grasp.physical = row.OptionalDouble(16);
   grasp.example_epsilon = row.Double(17);
   grasp.open_close_epsilon = row.Double(18);
@@ -75,6 +77,8 @@ SortRule FindSortRule(GraspQuery::Sort sort) {
       return {'r', "ifnull(g.robust, -1.0)", true};
     case GraspQuery::Sort::kNewest:
       return {'n', "g.seq", true};
+    case GraspQuery::Sort::kMerit:
+      return {'m', "g.merit", true};
   }
   return {'e', "g.epsilon", true};
 }
@@ -138,17 +142,18 @@ void store::InsertGrasp(Database& database, const StoredGrasp& grasp) {
       .Prepare(
           "INSERT INTO grasps (id, stage, position, object_id, part_id,"
           " part_label, category, hand, grasp_space_id, transfer_id,"
-          " source_grasp_id, epsilon, volume, hybrid, robust, physical,"
-          " example_epsilon, open_close_epsilon, penetration, data) VALUES"
-          " (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+          " source_grasp_id, epsilon, volume, hybrid, robust, grip,"
+          " physical, example_epsilon, open_close_epsilon, penetration, data)"
+          " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
+          " ?)")
       .Bind(grasp.id, ToString(grasp.stage), grasp.index, grasp.object_id,
             grasp.part_id, grasp.part_label, grasp.category, grasp.hand,
             grasp.grasp_space_id)
       .BindTextOrNull(grasp.transfer_id)
       .BindTextOrNull(grasp.source_grasp_id)
       .Bind(quality.epsilon, quality.volume, quality.hybrid, grasp.robust,
-            grasp.physical, grasp.example_epsilon, grasp.open_close_epsilon,
-            grasp.penetration)
+            grasp.grip, grasp.physical, grasp.example_epsilon,
+            grasp.open_close_epsilon, grasp.penetration)
       .BindBlob(EncodeGrasp({grasp.grasp, grasp.targets_O}))
       .Run();
   for (const auto& [label, distance] : grasp.clearances) {
@@ -211,9 +216,10 @@ Result<Page<StoredGrasp>> Store::QueryGrasps(const GraspQuery& query) const {
       page.items.push_back(MakeGrasp(database, rows));
       const StoredGrasp& grasp = page.items.back();
       const int64_t seq = rows.Int(0);
-      const double keys[] = {
-          grasp.grasp.quality.epsilon, grasp.grasp.quality.hybrid,
-          grasp.robust.value_or(-1.0), static_cast<double>(seq)};
+      const double keys[] = {grasp.grasp.quality.epsilon,
+                             grasp.grasp.quality.hybrid,
+                             grasp.robust.value_or(-1.0),
+                             static_cast<double>(seq), rows.Double(25)};
       last = {keys[static_cast<int>(query.sort)], seq};
     }
     return page;

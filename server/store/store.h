@@ -19,6 +19,7 @@ struct GraspQuery {
     kHybrid,   ///< Lowest measure of Eq. (1) first.
     kRobust,   ///< Highest share first, unknown last.
     kNewest,   ///< Latest stored first.
+    kMerit,    ///< What holds in a simulator first, then the surest grip.
   };
   std::string category;
   std::vector<std::string> part_labels;  ///< Any of these.

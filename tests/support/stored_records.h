@@ -168,6 +168,7 @@ inline StoredGraspSpace MakeSpaceRecord(const StoredPart& part, uint64_t seed) {
   record.seed = seed;
   record.engine_version = "0.1.0";
   record.seconds = 12.5;
+  record.configuration_space_seconds = 2.5;
   return record;
 }
 
@@ -223,6 +224,7 @@ inline NewTransfer MakeNewTransfer(const StoredGraspSpace& space,
       grasp.targets_O = {Eigen::Vector3d(1, 2, 3), std::nullopt,
                          Eigen::Vector3d(4, 5, 6)};
       grasp.robust = 0.96875;
+      grasp.grip = 0.625;
       grasp.penetration = 1e-5;
       attempt.transfer = attempt.assembly = TransferOutcome::kSucceeded;
       attempt.assembled_grasp_id = grasp.id;

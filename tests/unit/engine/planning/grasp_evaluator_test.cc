@@ -1,6 +1,8 @@
 #include "engine/planning/grasp_evaluator.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -62,7 +64,23 @@ TEST_F(GripperOnABox, AFirmGraspIsRobust) {
       CloseAndJudge(hand_, X_OH_, Eigen::Vector2d::Zero(), box_, parameters_);
   // The base stays 30 mm away from the box, the jaws 20 mm: no perturbation of
   // 3 mm and 3 degrees makes it collide.
-  EXPECT_GT(CalcRobustness(hand_, result.grasp, box_, parameters_, 1), 0.5);
+  EXPECT_GT(CalcRobustness(hand_, result.grasp, box_, parameters_, 1).stable,
+            0.5);
+}
+
+TEST_F(GripperOnABox, AFirmGraspIsGrippedButNotByWeakMotors) {
+  const EvaluatedGrasp result =
+      CloseAndJudge(hand_, X_OH_, Eigen::Vector2d::Zero(), box_, parameters_);
+  EXPECT_EQ(CalcGrip(hand_, result.grasp, box_.mass(), parameters_), 0.0);
+  Parameters weak = parameters_;
+  weak.grip.least_force = 0.1;
+  weak.grip.closing_force = weak.grip.holding_force = 0.2;
+  EXPECT_GT(CalcGrip(hand_, result.grasp, box_.mass(), weak), 0.5);
+  const Robustness firm =
+      CalcRobustness(hand_, result.grasp, box_, parameters_, 1);
+  EXPECT_GT(firm.gripped, 0.5);
+  EXPECT_LE(firm.gripped, firm.stable);
+  EXPECT_EQ(CalcRobustness(hand_, result.grasp, box_, weak, 1).gripped, 0.0);
 }
 
 TEST_F(GripperOnABox, PenetrationIsTheDepthOfTheOverlap) {
@@ -71,6 +89,43 @@ TEST_F(GripperOnABox, PenetrationIsTheDepthOfTheOverlap) {
   // Both jaws 1.5 mm into the box's sides.
   c.q = Eigen::Vector2d::Constant(0.0215);
   EXPECT_NEAR(CalcPenetration(hand_, c, box_), 0.0015, 1e-5);
+}
+
+// A cylinder stands 10 mm off the middle of the three fingers.
+TEST(TimeFingers, LetsAllMeetTheObjectTogetherWhereTheyMetIt) {
+  const HandShape hand(workshop::LoadBarrettHand());
+  const HandModel& model = hand.model();
+  const Solid cylinder(workshop::MakeCylinder(0.03, 0.12, 48, 12));
+  const RigidTransform X_OH{
+      Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+      {-0.115, 0.01, 0.0}};
+  const EvaluatedGrasp closed =
+      CloseAndJudge(hand, X_OH, Eigen::VectorXd::Zero(model.num_joints()),
+                    cylinder, Parameters());
+  ASSERT_TRUE(closed.ok());
+  const auto calc_travels = [&](const Grasp& grasp) {
+    std::vector<double> travels;
+    for (const HandActuator& actuator : model.actuators()) {
+      if (!actuator.closes) continue;
+      const int j = actuator.joints.front();
+      travels.push_back(grasp.configuration.q[j] - grasp.q_pregrasp[j]);
+    }
+    return travels;
+  };
+  const std::vector<double> before = calc_travels(closed.grasp);
+  const double least = *std::min_element(before.begin(), before.end());
+  ASSERT_GT(*std::max_element(before.begin(), before.end()), least + 0.05);
+  const Grasp timed = TimeFingers(hand, closed.grasp, cylinder, Parameters());
+  for (const double travel : calc_travels(timed)) {
+    EXPECT_NEAR(travel, std::max(0.2, least), 1e-12);
+  }
+  const EvaluatedGrasp again =
+      CloseAndJudge(hand, X_OH, timed.q_pregrasp, cylinder, Parameters());
+  ASSERT_TRUE(again.ok());
+  EXPECT_LT((again.grasp.configuration.q - closed.grasp.configuration.q)
+                .cwiseAbs()
+                .maxCoeff(),
+            0.01);
 }
 
 }  // namespace

@@ -63,6 +63,26 @@ TEST_F(Pinch, ForceAlongTheJawsIsStoodByTheGears) {
   EXPECT_TRUE(verdict.held[0] && verdict.held[1]);
 }
 
+TEST_F(Pinch, LiftsHalfAKiloButNotTwo) {
+  PushTest lift = MakeLiftTest();
+  // 4.9 N of weight against 2 · 0.5 · 5 N of friction: just held.
+  lift.closing_force = 7.0;
+  EXPECT_EQ(Judge(lift).CalcScore(), 1.0);
+  lift.mass = 2.0;
+  lift.force = 2.0 * 9.81;
+  EXPECT_EQ(Judge(lift).CalcScore(), 0.0);
+}
+
+TEST_F(Pinch, AtFrictionThreeTheNetDisplacementIsSmallEvenWhenItSlips) {
+  const PhysicalVerdict verdict = Judge(MakeNetDisplacementTest());
+  EXPECT_EQ(verdict.held.size(), 1u);
+  EXPECT_EQ(verdict.CalcScore(), 1.0);
+  PushTest strong = MakeNetDisplacementTest();
+  strong.friction = 0.05;
+  strong.force = 5.0;  // Ten times what friction bears.
+  EXPECT_EQ(Judge(strong).CalcScore(), 0.0);
+}
+
 TEST_F(Pinch, GivesTheSameVerdictEachTime) {
   EXPECT_EQ(Judge(PushTest()), Judge(PushTest()));
 }

@@ -190,6 +190,7 @@ TEST_F(StoreTest, GraspSpacesComeBackAsTheyWere) {
   EXPECT_EQ(found.num_grasps, 40);
   EXPECT_EQ(found.curve, MakeGraspSpace(5, 0).curve);
   EXPECT_EQ(found.seconds, 12.5);
+  EXPECT_EQ(found.configuration_space_seconds, 2.5);
   EXPECT_EQ(found.parameters, "{}");
 }
 
@@ -247,6 +248,7 @@ TEST_F(StoreTest, TransfersComeBackAsTheyWere) {
       store_->FindGrasp(found.attempts[2].assembled_grasp_id).value();
   EXPECT_EQ(grasp.stage, GraspStage::kAssembly);
   EXPECT_EQ(grasp.robust, 0.96875);
+  EXPECT_EQ(grasp.grip, 0.625);
   EXPECT_EQ(grasp.physical, std::nullopt);
   EXPECT_EQ(grasp.targets_O[1], std::nullopt);
   EXPECT_EQ(grasp.targets_O[2], Eigen::Vector3d(4, 5, 6));
@@ -286,6 +288,24 @@ TEST_F(StoreTest, PhysicalVerdictsAreKeptAndCanBeAskedFor) {
   const auto held = store_->QueryGrasps(query).value().items;
   ASSERT_THAT(held, SizeIs(1));
   EXPECT_EQ(held[0].id, grasps[0].id);
+
+  // What held comes first, what slipped last, across pages.
+  query = {};
+  query.category = "mug";
+  query.sort = GraspQuery::Sort::kMerit;
+  query.page.limit = 2;
+  std::vector<StoredGrasp> ranked;
+  do {
+    const auto page = store_->QueryGrasps(query).value();
+    ranked.insert(ranked.end(), page.items.begin(), page.items.end());
+    query.page.cursor = page.next_cursor;
+  } while (!query.page.cursor.empty());
+  ASSERT_GE(ranked.size(), 3u);
+  EXPECT_EQ(ranked.front().id, grasps[0].id);
+  EXPECT_EQ(ranked.back().id, grasps[1].id);
+  for (size_t i = 2; i + 1 < ranked.size(); ++i) {
+    EXPECT_GE(ranked[i - 1].grip.value_or(0.0), ranked[i].grip.value_or(0.0));
+  }
 }
 
 TEST_F(StoreTest, ATransferIsStoredOnce) {

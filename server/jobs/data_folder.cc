@@ -1,24 +1,18 @@
-#include "server/cli/populate.h"
+#include "server/jobs/data_folder.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 
 #include <fmt/format.h>
 
 #include "server/codec/input_json.h"
-#include "server/codec/record_json.h"
+#include "server/files.h"
 #include "server/jobs/sub_context.h"
 
 namespace graspdb {
 namespace {
 
 namespace fs = std::filesystem;
-
-// As much as a server takes, see ServiceOptions::max_mesh_bytes.
-const int64_t kMostFileBytes = ServiceOptions().max_mesh_bytes;
 
 // The folders in a folder that hold a file of that name, in order.
 std::vector<fs::path> FindFoldersWith(const fs::path& folder,
@@ -102,7 +96,7 @@ struct FolderExample {
 
 Result<std::vector<FolderExample>> ImportCategory(Service& service,
                                                   const fs::path& folder,
-                                                  Progress& progress) {
+                                                  ExecutionContext& context) {
   const fs::path head = folder / "category.json";
   GRASPDB_TRY(text, ReadFileBytes(head));
   const auto file = CategoryFileFromJson(text);
@@ -110,13 +104,12 @@ Result<std::vector<FolderExample>> ImportCategory(Service& service,
   if (const auto added = AddCategory(service, file->category); !added) {
     return InFile(head, added.error());
   }
-  progress.Say(fmt::format("category {}: {} examples", file->category.name,
-                           file->examples.size()));
+  context.ReportProgress("category " + file->category.name, 0.0);
   std::vector<FolderExample> examples;
   for (const CategoryExample& example : file->examples) {
     GRASPDB_TRY(order, ReadExample(folder, file->category.name, example));
-    ExecutionContext context;
-    const auto imported = service.ImportObject(order, context);
+    SubContext importing(context, example.name, 0.0, 0.0);
+    const auto imported = service.ImportObject(order, importing.context());
     if (!imported) return InFile(folder / example.mesh, imported.error());
     examples.push_back({folder / example.mesh, imported->object.id});
   }
@@ -130,44 +123,11 @@ Result<std::vector<FolderExample>> ImportCategory(Service& service,
   return examples;
 }
 
-Error MakeUnreadable(const std::string& name) {
-  return Error{ErrorCode::kInvalidArgument, name + " cannot be read.",
-               "check its name and permissions, or use - for standard input"};
-}
-
-Result<std::string> ReadBytes(std::FILE* file, const std::string& name) {
-  std::string bytes;
-  std::array<char, 65536> chunk{};
-  while (const size_t count = std::fread(chunk.data(), 1, chunk.size(), file)) {
-    bytes.append(chunk.data(), count);
-    if (std::ssize(bytes) > kMostFileBytes) {
-      return Error{
-          ErrorCode::kTooLarge,
-          fmt::format("{} has more than {} bytes.", name, kMostFileBytes),
-          "reduce it"};
-    }
-  }
-  if (std::ferror(file) != 0) return MakeUnreadable(name);
-  return bytes;
-}
-
 }  // namespace
 
-Result<std::string> ReadFileBytes(const std::string& path) {
-  if (path == "-") return ReadBytes(stdin, "standard input");
-  std::error_code code;
-  if (fs::is_directory(path, code)) {
-    return Error{ErrorCode::kInvalidArgument, path + " is a folder.",
-                 "name a file in it"};
-  }
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
-      std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) return MakeUnreadable(path);
-  return ReadBytes(file.get(), path);
-}
-
-Result<std::string> Populate(Service& service, const PopulateOrder& order,
-                             Progress& progress) {
+Result<std::vector<StoredGraspSpace>> Populate(Service& service,
+                                               const PopulateOrder& order,
+                                               ExecutionContext& context) {
   if (!fs::is_directory(order.folder)) {
     return Error{ErrorCode::kInvalidArgument,
                  order.folder + " is not a folder.",
@@ -178,14 +138,19 @@ Result<std::string> Populate(Service& service, const PopulateOrder& order,
     GRASPDB_TRY(files, ReadHandFolder(folder));
     const auto hand = service.AddHand(files);
     if (!hand) return InFile(folder, hand.error());
-    progress.Say("hand " + hand->name);
+    context.ReportProgress("hand " + hand->name, 0.0);
   }
   std::vector<FolderExample> examples;
   for (const fs::path& folder : FindFoldersWith(root, "category.json")) {
-    GRASPDB_TRY(imported, ImportCategory(service, folder, progress));
+    const auto& wanted = order.categories;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(),
+                                     folder.filename()) == wanted.end()) {
+      continue;
+    }
+    GRASPDB_TRY(imported, ImportCategory(service, folder, context));
     examples.insert(examples.end(), imported.begin(), imported.end());
   }
-  std::vector<std::string> spaces;
+  std::vector<StoredGraspSpace> spaces;
   const double count = static_cast<double>(examples.size());
   for (size_t i = 0; order.learn && i < examples.size(); ++i) {
     LearnOrder lesson;
@@ -193,19 +158,14 @@ Result<std::string> Populate(Service& service, const PopulateOrder& order,
     lesson.hands = order.hands;
     lesson.parameters = order.parameters;
     lesson.seed = order.seed;
-    ExecutionContext whole([&](const std::string& stage, double share) {
-      progress.Report(stage, share);
-    });
-    SubContext context(whole, examples[i].mesh.filename().string(),
-                       static_cast<double>(i) / count,
-                       static_cast<double>(i + 1) / count);
-    const auto learned = service.LearnObject(lesson, context.context());
+    SubContext learning(context, examples[i].mesh.filename().string(),
+                        static_cast<double>(i) / count,
+                        static_cast<double>(i + 1) / count);
+    const auto learned = service.LearnObject(lesson, learning.context());
     if (!learned) return InFile(examples[i].mesh, learned.error());
-    for (const StoredGraspSpace& space : *learned) {
-      spaces.push_back(ToJson(space));
-    }
+    spaces.insert(spaces.end(), learned->begin(), learned->end());
   }
-  return ListToJson(spaces, "");
+  return spaces;
 }
 
 }  // namespace graspdb

@@ -1,0 +1,447 @@
+#include "server/bench/paper_bench.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "server/bench/bench_rows.h"
+#include "server/bench/html_report.h"
+#include "server/bench/published_results.h"
+#include "server/bench/scanned_cloud.h"
+#include "server/codec/input_json.h"
+#include "server/codec/parameters_json.h"
+#include "server/files.h"
+#include "server/ids.h"
+#include "server/jobs/data_folder.h"
+#include "server/jobs/sub_context.h"
+
+namespace graspdb {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLearnShare = 0.3;  // Of a variant's progress.
+constexpr int kQuickSources = 8;
+// Of the reconstructed mug (Table III).
+constexpr int kBodyPoints = 1000;
+constexpr int kOtherPoints = 500;
+
+// What the rows of one object are made of.
+struct Item {
+  std::string group;  // "paper", "further", "cloud", "objects".
+  int number{0};      // The paper's #1 or #2; 0: none.
+  std::string category;
+  std::string name;
+  ImportOrder mesh;
+};
+
+std::string Slug(const std::string& text) {
+  std::string slug;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    slug += plain ? c : '-';
+  }
+  return slug;
+}
+
+Result<CategoryFile> ReadCategory(const fs::path& folder) {
+  GRASPDB_TRY(text, ReadFileBytes(folder / "category.json"));
+  return CategoryFileFromJson(text);
+}
+
+// Without what differs between variants.
+class PaperBench {
+ public:
+  PaperBench(const PaperBenchOrder& order, const OpenService& open,
+             ExecutionContext& context)
+      : order_(order), open_(open), context_(context) {}
+
+  Result<Json> Run() {
+    std::error_code code;
+    fs::create_directories(fs::path(order_.out) / "rows", code);
+    if (code) {
+      return Error{ErrorCode::kInvalidArgument,
+                   order_.out + " cannot be made: " + code.message() + ".",
+                   "name a folder that can be written to"};
+    }
+    GRASPDB_TRY(items, CollectItems());
+    Json report = DescribeRun();
+    const size_t all = order_.variants.size() + order_.ablations.size();
+    size_t done = 0;
+    report["variants"] = Json::array();
+    report["ablations"] = Json::array();
+    for (const bool ablation : {false, true}) {
+      for (const BenchVariant& variant :
+           ablation ? order_.ablations : order_.variants) {
+        const double begin =
+            static_cast<double>(done) / static_cast<double>(all);
+        ++done;
+        const double end = static_cast<double>(done) / static_cast<double>(all);
+        SubContext part(context_, variant.name, begin, end);
+        GRASPDB_TRY(result,
+                    RunVariant(variant, items, !ablation && order_.physical,
+                               part.context()));
+        report[ablation ? "ablations" : "variants"].push_back(
+            std::move(result));
+        // What is there so far may be looked at.
+        GRASPDB_TRY_VOID(WriteReports(report));
+      }
+    }
+    return report;
+  }
+
+ private:
+  int sources() const {
+    return order_.quick ? std::min(kQuickSources, order_.sources)
+                        : order_.sources;
+  }
+
+  Result<void> WriteReports(const Json& report) const {
+    GRASPDB_TRY_VOID(WriteFileBytes(fs::path(order_.out) / "paper.json",
+                                    report.dump(1) + "\n"));
+    return WriteFileBytes(fs::path(order_.out) / "paper.html",
+                          MakeHtmlReport(report));
+  }
+
+  Json DescribeRun() const {
+    Json report;
+    report["bench"] = "paper";
+    report["engine_version"] = EngineVersion();
+    report["simulator"] = SimulatorVersion();
+    report["machine"] = {{"cores", std::thread::hardware_concurrency()},
+                         {"compiler", __VERSION__}};
+    report["seed"] = order_.seed;
+    report["sources_per_part"] = sources();
+    report["quick"] = order_.quick;
+    report["tests"] = {{"six_pushes", PushTest().name},
+                       {"net_displacement", MakeNetDisplacementTest().name},
+                       {"lift", MakeLiftTest().name}};
+    return report;
+  }
+
+  // Everything that is transferred to, before anything is computed.
+  Result<std::vector<Item>> CollectItems() const {
+    std::vector<Item> items;
+    for (const std::string& category : order_.categories) {
+      const fs::path folder = fs::path(order_.data) / category;
+      GRASPDB_TRY(file, ReadCategory(folder));
+      for (size_t i = 0; i < file.novel.size(); ++i) {
+        if (order_.quick && i > 0) break;
+        Item item;
+        item.group = i < 2 ? "paper" : "further";
+        item.number = i < 2 ? static_cast<int>(i) + 1 : 0;
+        item.category = category;
+        item.name = file.novel[i].name;
+        GRASPDB_TRY(bytes, ReadFileBytes(folder / file.novel[i].mesh));
+        item.mesh.bytes = std::move(bytes);
+        item.mesh.file_name = fs::path(file.novel[i].mesh).filename();
+        items.push_back(item);
+      }
+    }
+    const auto first_mug =
+        std::find_if(items.begin(), items.end(),
+                     [](const Item& item) { return item.category == "mug"; });
+    if (first_mug != items.end() && !order_.quick) {
+      const Item mug = *first_mug;
+      items.push_back(MakeCloudItem(mug, "all around"));
+      items.push_back(MakeCloudItem(mug, "one side"));
+    }
+    GRASPDB_TRY_VOID(CollectObjects(items));
+    return items;
+  }
+
+  // The bytes are made when the mug has been segmented.
+  static Item MakeCloudItem(const Item& mug, const std::string& view) {
+    Item item;
+    item.group = "cloud";
+    item.category = mug.category;
+    item.name = mug.name + ", " + view;
+    item.mesh.file_name = "cloud.xyz";
+    return item;
+  }
+
+  Result<void> CollectObjects(std::vector<Item>& items) const {
+    if (order_.objects.empty()) return {};
+    for (const std::string& category : order_.categories) {
+      const fs::path folder = fs::path(order_.objects) / category;
+      std::vector<fs::path> files;
+      std::error_code code;
+      for (const auto& entry : fs::directory_iterator(folder, code)) {
+        const std::string extension = entry.path().extension();
+        for (const char* known :
+             {".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".dae"}) {
+          if (extension == known) files.push_back(entry.path());
+        }
+      }
+      std::sort(files.begin(), files.end());
+      for (const fs::path& file : files) {
+        Item item;
+        item.group = "objects";
+        item.category = category;
+        item.name = file.stem();
+        GRASPDB_TRY(bytes, ReadFileBytes(file));
+        item.mesh.bytes = std::move(bytes);
+        item.mesh.file_name = file.filename();
+        item.mesh.units = order_.units;
+        items.push_back(std::move(item));
+      }
+    }
+    return {};
+  }
+
+  Result<Json> RunVariant(const BenchVariant& variant,
+                          const std::vector<Item>& items, bool physical,
+                          ExecutionContext& context) {
+    GRASPDB_TRY(service, open_(fs::path(order_.out) / "bench.db"));
+    PopulateOrder populate;
+    populate.folder = order_.data;
+    populate.categories = order_.categories;
+    populate.parameters = variant.parameters;
+    populate.seed = order_.seed;
+    SubContext learning(context, "learn", 0.0, kLearnShare);
+    GRASPDB_TRY(spaces, Populate(*service, populate, learning.context()));
+
+    Json result;
+    result["name"] = variant.name;
+    result["parameters"] = Json::parse(ParametersToJson(variant.parameters));
+    result["learning"] = Json::array();
+    for (const StoredGraspSpace& space : spaces) {
+      GRASPDB_TRY(row, DescribeLearning(*service, space));
+      result["learning"].push_back(std::move(row));
+    }
+    result["rows"] = Json::array();
+    for (size_t i = 0; i < items.size(); ++i) {
+      const auto at = [&](size_t k) {
+        return kLearnShare + (1.0 - kLearnShare) * static_cast<double>(k) /
+                                 static_cast<double>(items.size());
+      };
+      SubContext part(context, items[i].category + " " + items[i].name, at(i),
+                      at(i + 1));
+      GRASPDB_TRY(
+          rows, RunItem(*service, variant, items[i], physical, part.context()));
+      for (Json& row : rows) result["rows"].push_back(std::move(row));
+    }
+    result["pooled"] = Json::object();
+    for (const char* group : {"paper", "further", "cloud", "objects"}) {
+      std::vector<Json> rows;
+      for (const Json& row : result["rows"]) {
+        if (row["group"] == group) rows.push_back(row);
+      }
+      if (!rows.empty()) result["pooled"][group] = PoolRows(rows);
+    }
+    return result;
+  }
+
+  static Result<Json> DescribeLearning(Service& service,
+                                       const StoredGraspSpace& space) {
+    GRASPDB_TRY(part, service.store().FindPart(space.part_id));
+    GRASPDB_TRY(learned, service.store().ReadGraspSpace(space.id));
+    std::vector<double> epsilons;
+    for (const Grasp& grasp : learned.grasps) {
+      epsilons.push_back(grasp.quality.epsilon);
+    }
+    return MakeLearningRow(space, static_cast<int>(part.faces.size()),
+                           epsilons);
+  }
+
+  // All rows of one object: read, when they were made before for the same
+  // question, else made and written.
+  Result<std::vector<Json>> RunItem(Service& service,
+                                    const BenchVariant& variant,
+                                    const Item& item, bool physical,
+                                    ExecutionContext& context) {
+    const std::string key = MakeContentId(fmt::format(
+        "{} {} {} {} {} {} {} {}", EngineVersion(), variant.name,
+        ParametersToJson(variant.parameters), order_.seed, sources(), physical,
+        item.name, MakeContentId(item.mesh.bytes)));
+    const fs::path file = fs::path(order_.out) / "rows" /
+                          (Slug(variant.name + " " + item.group + " " +
+                                item.category + " " + item.name) +
+                           ".json");
+    if (fs::exists(file)) {
+      GRASPDB_TRY(text, ReadFileBytes(file));
+      Json known = Json::parse(text, nullptr, false);
+      if (known.is_object() && known.value("key", "") == key) {
+        return known["rows"].get<std::vector<Json>>();
+      }
+    }
+    GRASPDB_TRY(rows, MakeRows(service, variant, item, physical, context));
+    for (Json& row : rows) {
+      row["group"] = item.group;
+      row["number"] = item.number;
+      row["category"] = item.category;
+      row["object"] = item.name;
+    }
+    Json written;
+    written["key"] = key;
+    written["rows"] = rows;
+    // Whole or not at all, whenever the power goes.
+    const fs::path draft = file.string() + ".new";
+    GRASPDB_TRY_VOID(WriteFileBytes(draft, written.dump(1)));
+    fs::rename(draft, file);
+    return rows;
+  }
+
+  Result<std::vector<Json>> MakeRows(Service& service,
+                                     const BenchVariant& variant,
+                                     const Item& item, bool physical,
+                                     ExecutionContext& context) {
+    TransferOrder transfer;
+    transfer.mesh = item.mesh;
+    transfer.category = item.category;
+    transfer.parameters = variant.parameters;
+    transfer.seed = order_.seed;
+    transfer.sources = sources();
+    if (item.group == "cloud") {
+      GRASPDB_TRY(points, ScanMug(service, item));
+      transfer.mesh.bytes = FormatXyz(points);
+    }
+    SubContext transferring(context, "", 0.0, physical ? 0.2 : 1.0);
+    const auto answer =
+        service.TransferGrasps(transfer, transferring.context());
+    if (!answer) {
+      if (answer.error().code == ErrorCode::kCancelled) return answer.error();
+      // An object that is refused is so many grasps that failed.
+      GRASPDB_TRY(category, service.store().FindCategory(item.category));
+      std::vector<Json> rows;
+      for (const CategoryPart& part : category.parts) {
+        rows.push_back(MakeFailedRow(part.label, sources(), answer.error()));
+      }
+      return rows;
+    }
+    TestScores further;
+    if (physical) {
+      GRASPDB_TRY(scores, Simulate(service, answer->transfer.id, context));
+      further = std::move(scores);
+    }
+    GRASPDB_TRY(grasps, ReadGrasps(service, answer->transfer.id));
+    std::vector<Json> rows;
+    for (const StoredPart& part : answer->parts) {
+      const auto& wanted = answer->transfer.part_labels;
+      if (std::find(wanted.begin(), wanted.end(), part.label) == wanted.end()) {
+        continue;
+      }
+      rows.push_back(MakeTransferRow(answer->transfer, part, grasps, further));
+      rows.back()["similarity"] = answer->transfer.similarity;
+      rows.back()["warnings"] = answer->transfer.warnings;
+    }
+    return rows;
+  }
+
+  // Points of the mesh whose cloud it is.
+  Result<std::vector<Eigen::Vector3d>> ScanMug(Service& service,
+                                               const Item& item) const {
+    GRASPDB_TRY(objects, service.store().ListObjects(
+                             {item.category, ObjectRole::kNovel}, {1000, ""}));
+    const std::string name = item.name.substr(0, item.name.find(", "));
+    for (const StoredObject& object : objects.items) {
+      if (object.file_name.substr(0, object.file_name.find('.')) != name) {
+        continue;
+      }
+      GRASPDB_TRY(meshes, service.store().ReadObjectMeshes(object.id));
+      GRASPDB_TRY(category, service.store().FindCategory(item.category));
+      ScanOptions scan;
+      scan.seed = order_.seed;
+      for (const CategoryPart& part : category.parts) {
+        scan.points_by_label.push_back(part.label == "body" ? kBodyPoints
+                                                            : kOtherPoints);
+      }
+      if (item.name.ends_with("one side")) {
+        // From above and beside, so that the handle is in sight.
+        scan.camera_O = Eigen::Vector3d(1.0, 2.0, 1.0).normalized();
+      }
+      return ScanSurface(meshes.canonical, meshes.canonical_labels, scan);
+    }
+    return Error{ErrorCode::kNotFound, "There is no " + name + " to scan.", ""};
+  }
+
+  // The stored test, and the two that are published for other hands.
+  Result<TestScores> Simulate(Service& service, const std::string& transfer_id,
+                              ExecutionContext& context) {
+    VerifyOrder verify;
+    verify.query.transfer_id = transfer_id;
+    verify.query.stage = GraspStage::kAssembly;
+    SubContext pushing(context, "six pushes", 0.2, 0.6);
+    GRASPDB_TRY_VOID(service.VerifyGrasps(verify, pushing.context()));
+    TestScores further;
+    const std::pair<const char*, PushTest> tests[] = {
+        {"net_displacement", MakeNetDisplacementTest()},
+        {"lift", MakeLiftTest()}};
+    double begin = 0.6;
+    for (const auto& [key, test] : tests) {
+      verify.test = test;
+      verify.keep = false;
+      SubContext testing(context, key, begin, begin + 0.2);
+      begin += 0.2;
+      GRASPDB_TRY(verified, service.VerifyGrasps(verify, testing.context()));
+      for (const VerifiedGrasp& one : verified) {
+        further[key][one.grasp.id] = one.verdict.CalcScore();
+      }
+    }
+    return further;
+  }
+
+  // Of both stages, in an order that no simulator has had a part in.
+  static Result<std::vector<StoredGrasp>> ReadGrasps(
+      Service& service, const std::string& transfer_id) {
+    std::vector<StoredGrasp> grasps;
+    GraspQuery query;
+    query.transfer_id = transfer_id;
+    query.page.limit = 1000;
+    do {
+      GRASPDB_TRY(page, service.store().QueryGrasps(query));
+      std::move(page.items.begin(), page.items.end(),
+                std::back_inserter(grasps));
+      query.page.cursor = page.next_cursor;
+    } while (!query.page.cursor.empty());
+    const auto merit = [](const StoredGrasp& grasp) {
+      return std::pair(grasp.grip.value_or(0.0), grasp.grasp.quality.epsilon);
+    };
+    std::stable_sort(grasps.begin(), grasps.end(),
+                     [&](const StoredGrasp& a, const StoredGrasp& b) {
+                       return merit(a) > merit(b);
+                     });
+    return grasps;
+  }
+
+  const PaperBenchOrder& order_;
+  const OpenService& open_;
+  ExecutionContext& context_;
+};
+
+}  // namespace
+
+Result<Json> RunPaperBench(const PaperBenchOrder& order,
+                           const OpenService& open, ExecutionContext& context) {
+  return PaperBench(order, open, context).Run();
+}
+
+std::vector<BenchVariant> MakeAblations() {
+  std::vector<BenchVariant> ablations;
+  const auto without = [&ablations](const std::string& name,
+                                    const auto& change) {
+    ablations.push_back({"default without " + name, MakeDefaultParameters()});
+    change(ablations.back().parameters);
+  };
+  without("the wrist's motion",
+          [](Parameters& p) { p.replan.move_wrist = false; });
+  without("aimed starts", [](Parameters& p) { p.replan.aimed_starts = false; });
+  without("repeated annealing", [](Parameters& p) { p.replan.cycles = 1; });
+  without("bending", [](Parameters& p) { p.mapping.warp_steps = 0; });
+  without("affine mapping and bending", [](Parameters& p) {
+    p.mapping.affine = false;
+    p.mapping.warp_steps = 0;
+  });
+  without("robust examples",
+          [](Parameters& p) { p.swarm.min_robustness = 0.0; });
+  without("examples that hold on the whole",
+          [](Parameters& p) { p.swarm.hold_on_whole = false; });
+  without("niches", [](Parameters& p) { p.swarm.niches = false; });
+  return ablations;
+}
+
+}  // namespace graspdb
