@@ -45,6 +45,7 @@ struct SwarmParameters {
   double max_turn{0.35};
   int patience{6};
   double aimed_share{0.5};
+  double uniform_share{0.0};
   bool niches{true};
   bool hold_on_whole{true};
   double min_robustness{0.5};
@@ -71,6 +72,8 @@ struct SwarmParameters {
     f("aimed_share", self.aimed_share,
       ParameterInfo{"1", 0, 1,
                     "ours: restarts aimed at the surface; paper: 0"});
+    f("uniform_share", self.uniform_share,
+      ParameterInfo{"1", 0, 1, "ours: of the others, those from anywhere"});
     f("niches", self.niches,
       ParameterInfo{"1", 0, 1, "ours: one leader per approach direction"});
     f("hold_on_whole", self.hold_on_whole,

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "engine/base/random.h"
 #include "engine/geometry/surface_patch.h"
@@ -19,9 +19,10 @@ namespace {
 constexpr double kRobustShift = 0.003;              // m
 constexpr double kRobustTurn = 3.0 * M_PI / 180.0;  // rad
 constexpr double kRobustFriction = 0.2;
-constexpr double kLeastTravel = 0.2;      // Of a motor, rad, see TimeFingers().
-constexpr double kSameJoints = 0.01;      // rad; section "reachable".
-constexpr double kApproachStep = 0.0005;  // m
+// Shares of a motor's range that are tried in turn, see TimeFingers().
+constexpr double kTravels[] = {0.5, 0.35, 0.25, 0.125, 0.06, 0.03};
+constexpr double kSameJoints = 0.01;           // rad; section "reachable".
+constexpr double kApproachStep = 0.0005;       // m
 constexpr double kPenetrationSpacing = 0.001;  // m
 
 // Visits patches of at most the spacing that may lie inside the solid.
@@ -113,38 +114,44 @@ bool IsReachable(const HandShape& hand, const Grasp& grasp,
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
                   const Parameters& parameters) {
   const HandModel& model = hand.model();
-  // How far each motor turns until its finger's first joint is blocked.
-  std::vector<double> travel;
-  double least = std::numeric_limits<double>::infinity();
-  for (const HandActuator& actuator : model.actuators()) {
-    const auto first = static_cast<size_t>(actuator.joints.front());
-    const auto j = static_cast<Eigen::Index>(first);
-    travel.push_back((grasp.configuration.q[j] - grasp.q_pregrasp[j]) /
-                     model.joints()[first].ratio);
-    if (actuator.closes) least = std::min(least, travel.back());
-  }
-  least = std::max(least, kLeastTravel);
-  Eigen::VectorXd q = grasp.q_pregrasp;
-  for (size_t a = 0; a < travel.size(); ++a) {
-    const HandActuator& actuator = model.actuators()[a];
+  // Where each motor's first joint is blocked, and how far all can be from it.
+  Eigen::VectorXd blocked = model.CalcActuators(grasp.q_pregrasp);
+  double most = 1.0;
+  for (int a = 0; a < model.num_actuators(); ++a) {
+    const HandActuator& actuator = model.actuators()[static_cast<size_t>(a)];
     if (!actuator.closes) continue;
-    for (const int j : actuator.joints) {
-      q[j] += model.joints()[static_cast<size_t>(j)].ratio *
-              std::max(0.0, travel[a] - least);
+    const int first = actuator.joints.front();
+    blocked[a] = grasp.configuration.q[first] /
+                 model.joints()[static_cast<size_t>(first)].ratio;
+    most = std::min(most, (blocked[a] - actuator.lower) /
+                              (actuator.upper - actuator.lower));
+  }
+  std::vector<double> travels{most};
+  for (const double travel : kTravels) {
+    if (travel < most) travels.push_back(travel);
+  }
+  for (const double travel : travels) {
+    Eigen::VectorXd motors = blocked;
+    for (int a = 0; a < model.num_actuators(); ++a) {
+      const HandActuator& actuator = model.actuators()[static_cast<size_t>(a)];
+      if (actuator.closes) {
+        motors[a] -= travel * (actuator.upper - actuator.lower);
+      }
+    }
+    const EvaluatedGrasp timed =
+        CloseAndJudge(hand, grasp.configuration.X_OH,
+                      model.CalcCoupledJoints(motors), solid, parameters);
+    if (timed.ok() &&
+        (timed.grasp.configuration.q - grasp.configuration.q)
+                .cwiseAbs()
+                .maxCoeff() <= kSameJoints &&
+        IsReachable(hand, timed.grasp, solid)) {
+      Grasp result = grasp;
+      result.q_pregrasp = timed.grasp.q_pregrasp;
+      return result;
     }
   }
-  EvaluatedGrasp timed =
-      CloseAndJudge(hand, grasp.configuration.X_OH, q, solid, parameters);
-  if (!timed.ok() ||
-      (timed.grasp.configuration.q - grasp.configuration.q)
-              .cwiseAbs()
-              .maxCoeff() > kSameJoints ||
-      !IsReachable(hand, timed.grasp, solid)) {
-    return grasp;
-  }
-  Grasp result = grasp;
-  result.q_pregrasp = q;
-  return result;
+  return grasp;
 }
 
 double CalcGrip(const HandShape& hand, const Grasp& grasp,

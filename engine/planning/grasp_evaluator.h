@@ -50,11 +50,11 @@ double CalcHybrid(const HandShape& hand, const Grasp& grasp, const Solid& solid,
  grasp.approach_O, without touching the solid. */
 bool IsReachable(const HandShape& hand, const Grasp& grasp, const Solid& solid);
 
-/** The grasp with each finger, before it closes, as near to where it meets the
+/** The grasp with each finger, before it closes, as far from where it meets the
  object as the others: at equal speed all meet it together, and none pushes it
- away. The finger that meets it first stays as open as it was, but none comes
- nearer than 0.2 of its motor's travel. Unchanged where the hand could then not
- come along its approach, or the fingers would end elsewhere. */
+ away. As far as they open, or less where the hand could not come along its
+ approach so, or the fingers would end elsewhere; unchanged where nothing does.
+ */
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
                   const Parameters& parameters);
 

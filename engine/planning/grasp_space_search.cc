@@ -136,6 +136,7 @@ class Swarm {
         static_cast<size_t>(iteration) * swarm_.particles + index;
     const bool near = random.NextUniform() < swarm_.near_share;
     const bool aimed = random.NextUniform() < swarm_.aimed_share;
+    const bool uniform = !aimed && random.NextUniform() < swarm_.uniform_share;
     if (near && archive_.size() > 0) {
       // Any approach that has led to one is as likely as another.
       const std::vector<int>& niche = found_by_niche_[static_cast<size_t>(
@@ -147,6 +148,8 @@ class Swarm {
           space_.Perturb({found.configuration.X_OH,
                           hand_.model().CalcActuators(found.q_pregrasp)},
                          swarm_.max_step, swarm_.max_turn, random);
+    } else if (uniform) {
+      particle.here = space_.Sample(random);
     } else if (!aimed && next < seeds_.size()) {
       particle.here = seeds_[next];
     } else if (!aimed && !seeds_.empty()) {
@@ -158,7 +161,8 @@ class Swarm {
     }
     constexpr int kTries = 100;
     for (int i = 0; i < kTries && !IsFree(particle.here); ++i) {
-      particle.here = space_.SampleAimed(random);
+      particle.here =
+          uniform ? space_.Sample(random) : space_.SampleAimed(random);
     }
     particle.velocity.shift = swarm_.max_step * random.NextInUnitBall();
     particle.velocity.turn = swarm_.max_turn * random.NextInUnitBall();

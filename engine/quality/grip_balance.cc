@@ -16,6 +16,7 @@ struct LoadedJoint {
   bool slides{false};
   double lever{1.0};  // To its farthest point, m.
   int joint{0};
+  bool locks{false};  // Its motor goes on to turn a joint further out.
 };
 
 std::vector<LoadedJoint> FindLoadedJoints(
@@ -39,6 +40,14 @@ std::vector<LoadedJoint> FindLoadedJoints(
     LoadedJoint one{X_OJ.translation, X_OJ.rotation * joint.axis_J};
     one.slides = joint.type == JointType::kPrismatic;
     one.joint = j;
+    const std::vector<int>& chain =
+        model.actuators()[static_cast<size_t>(joint.actuator)].joints;
+    for (auto outer = std::find(chain.begin(), chain.end(), j);
+         ++outer != chain.end();) {
+      one.locks =
+          one.locks ||
+          model.joints()[static_cast<size_t>(*outer)].breakaway_ratio > 0.0;
+    }
     for (int link = 0; link < model.num_links() && !one.slides; ++link) {
       one.lever = link == 0 ? 0.0 : one.lever;
       one.lever = std::max(one.lever, hand.motion_bound(link, j));
@@ -90,7 +99,12 @@ double CalcGripResidual(const HandShape& hand, const RigidTransform& X_OH,
   }
   const NonnegativeLeastSquares problem(A);
   const auto calc_residual = [&](double most) {
-    b.tail(m).setConstant(most - parameters.least_force);
+    for (Eigen::Index r = 0; r < m; ++r) {
+      b[6 + m + r] =
+          (joints[static_cast<size_t>(r)].locks ? parameters.holding_force
+                                                : most) -
+          parameters.least_force;
+    }
     return (A * problem.Solve(b) - b).norm();
   };
   double worst = calc_residual(parameters.closing_force);

@@ -15,9 +15,10 @@ namespace graspdb {
  forces within the friction cones (friction times grip.friction_share) that keep
  the object at rest, while every closing joint that a contact loads bears what a
  motor lets it bear, as a force at its farthest point: grip.least_force to
- grip.closing_force when the fingers have just closed, and up to
- grip.holding_force, which its worm gear stands, against a push of grip.push at
- the mass centre. Joints that do not close and the base bear anything.
+ grip.closing_force when the fingers have just closed, or up to
+ grip.holding_force, which its worm gear stands, when it has locked while its
+ motor goes on to turn an outer joint, and against a push of grip.push at the
+ mass centre. Joints that do not close and the base bear anything.
  @param enough  Once the residual is known to exceed this, any value above it.
  @returns what stays unbalanced, N, joints and object together (torques over the
    object's largest radius), in the worst of the seven cases: closed, and pushed

@@ -1,6 +1,7 @@
 #include "server/bench/html_report.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,11 +23,11 @@ constexpr char kHead[] = R"(<!DOCTYPE html>
 <meta name="viewport" content="width=device-width">
 <title>graspdb: the paper's evaluation</title>
 <style>
-body { font-family: sans-serif; margin: 2em auto; max-width: 75em;
+body { font-family: sans-serif; margin: 2em auto; max-width: 90em;
        padding: 0 1em; color: #222; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 14px; }
-th, td { border-bottom: 1px solid #ddd; padding: 3px 8px; text-align: right;
-         white-space: nowrap; }
+th, td { border-bottom: 1px solid #ddd; padding: 3px 6px; text-align: right; }
+td { white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 th { background: #f4f4f4; vertical-align: bottom; }
 .scroll { overflow-x: auto; }
@@ -316,6 +317,40 @@ std::string MakeLearningFigures(const Json& variant) {
   return html + "</div>\n";
 }
 
+// Distinct grasps over time, by where the swarm started.
+std::string MakeSeedingFigures(const Json& variant) {
+  if (!variant.contains("seeding")) return "";
+  constexpr const char* kColors[] = {kTheirs, kOurs, kOther};
+  std::vector<std::pair<std::string, std::vector<PlotSeries>>> plots;
+  for (const Json& row : variant["seeding"]) {
+    const std::string part = row["category"].get<std::string>() + " " +
+                             row["part"].get<std::string>();
+    if (plots.empty() || plots.back().first != part) {
+      plots.emplace_back(part, std::vector<PlotSeries>());
+    }
+    std::vector<PlotSeries>& series = plots.back().second;
+    PlotSeries one;
+    one.name = row["seeding"].get<std::string>();
+    one.color = kColors[std::min<size_t>(series.size(), 2)];
+    one.line = true;
+    for (const Json& point : row["curve"]) {
+      AddPoint(point["seconds"], point["grasps"], one);
+    }
+    series.push_back(std::move(one));
+  }
+  std::string html =
+      "<h3>Where the swarm starts: distinct grasps at equal time</h3>\n"
+      "<div class=\"grid\">";
+  for (const auto& [part, series] : plots) {
+    PlotOptions options;
+    options.title = part;
+    options.x_label = "seconds, all cores";
+    options.y_label = "grasps";
+    html += MakeSvgPlot(series, options);
+  }
+  return html + "</div>\n";
+}
+
 std::string MakeFailureTable(const Json& variants) {
   std::vector<Cells> rows;
   for (const Json& variant : variants) {
@@ -399,7 +434,8 @@ std::string MakeHtmlReport(const Json& report) {
   for (const Json& variant : report["variants"]) {
     html += "<h2>Figures: " + EscapeHtml(variant["name"].get<std::string>()) +
             "</h2>\n<h3>Active learning</h3>\n" + MakeLearningFigures(variant) +
-            "<h3>Quality of each grasp</h3>\n" + MakeFigures(variant);
+            MakeSeedingFigures(variant) + "<h3>Quality of each grasp</h3>\n" +
+            MakeFigures(variant);
   }
   return html + "</body>\n</html>\n";
 }

@@ -12,6 +12,7 @@
 #include "server/bench/html_report.h"
 #include "server/bench/published_results.h"
 #include "server/bench/scanned_cloud.h"
+#include "server/bench/seeding_comparison.h"
 #include "server/codec/input_json.h"
 #include "server/codec/parameters_json.h"
 #include "server/files.h"
@@ -213,6 +214,10 @@ class PaperBench {
       GRASPDB_TRY(row, DescribeLearning(*service, space));
       result["learning"].push_back(std::move(row));
     }
+    if (physical && order_.seeding_seconds > 0.0 && !order_.quick) {
+      GRASPDB_TRY(seeding, RunSeeding(*service, variant, spaces, context));
+      result["seeding"] = std::move(seeding);
+    }
     result["rows"] = Json::array();
     for (size_t i = 0; i < items.size(); ++i) {
       const auto at = [&](size_t k) {
@@ -234,6 +239,61 @@ class PaperBench {
       if (!rows.empty()) result["pooled"][group] = PoolRows(rows);
     }
     return result;
+  }
+
+  // Ways to seed the swarm, part by part, or what was found of them before.
+  Result<Json> RunSeeding(Service& service, const BenchVariant& variant,
+                          const std::vector<StoredGraspSpace>& spaces,
+                          ExecutionContext& context) {
+    Json all = Json::array();
+    for (const StoredGraspSpace& space : spaces) {
+      const std::string key = MakeContentId(fmt::format(
+          "{} {} {} {} seeding {}", EngineVersion(), space.parameters_hash,
+          order_.seed, order_.seeding_seconds, space.part_label));
+      const std::string part = space.category + " " + space.part_label;
+      const fs::path file = MakeRowPath(variant.name + " seeding " + part);
+      std::optional<Json> rows = ReadRows(file, key);
+      if (!rows) {
+        SubContext comparing(context, "seeding " + part, kLearnShare,
+                             kLearnShare);
+        GRASPDB_TRY(compared, CompareSeeding(service, space, variant.parameters,
+                                             order_.seeding_seconds,
+                                             order_.seed, comparing.context()));
+        GRASPDB_TRY_VOID(WriteRows(file, key, compared));
+        rows = std::move(compared);
+      }
+      for (Json& row : *rows) all.push_back(std::move(row));
+    }
+    return all;
+  }
+
+  fs::path MakeRowPath(const std::string& name) const {
+    return fs::path(order_.out) / "rows" / (Slug(name) + ".json");
+  }
+
+  // What was written for the same question, if anything.
+  static std::optional<Json> ReadRows(const fs::path& file,
+                                      const std::string& key) {
+    if (!fs::exists(file)) return std::nullopt;
+    const auto text = ReadFileBytes(file);
+    if (!text) return std::nullopt;
+    const Json known = Json::parse(*text, nullptr, false);
+    if (!known.is_object() || known.value("key", "") != key) {
+      return std::nullopt;
+    }
+    return known["rows"];
+  }
+
+  // Whole or not at all, whenever the power goes.
+  static Result<void> WriteRows(const fs::path& file, const std::string& key,
+                                const Json& rows) {
+    Json written;
+    written["key"] = key;
+    written["rows"] = rows;
+    const fs::path draft = file.string() + ".new";
+    GRASPDB_TRY_VOID(WriteFileBytes(draft, written.dump(1)));
+    fs::rename(draft, file);
+    return {};
   }
 
   static Result<Json> DescribeLearning(Service& service,
@@ -258,16 +318,10 @@ class PaperBench {
         "{} {} {} {} {} {} {} {}", EngineVersion(), variant.name,
         ParametersToJson(variant.parameters), order_.seed, sources(), physical,
         item.name, MakeContentId(item.mesh.bytes)));
-    const fs::path file = fs::path(order_.out) / "rows" /
-                          (Slug(variant.name + " " + item.group + " " +
-                                item.category + " " + item.name) +
-                           ".json");
-    if (fs::exists(file)) {
-      GRASPDB_TRY(text, ReadFileBytes(file));
-      Json known = Json::parse(text, nullptr, false);
-      if (known.is_object() && known.value("key", "") == key) {
-        return known["rows"].get<std::vector<Json>>();
-      }
+    const fs::path file = MakeRowPath(variant.name + " " + item.group + " " +
+                                      item.category + " " + item.name);
+    if (const auto known = ReadRows(file, key)) {
+      return known->get<std::vector<Json>>();
     }
     GRASPDB_TRY(rows, MakeRows(service, variant, item, physical, context));
     for (Json& row : rows) {
@@ -276,13 +330,7 @@ class PaperBench {
       row["category"] = item.category;
       row["object"] = item.name;
     }
-    Json written;
-    written["key"] = key;
-    written["rows"] = rows;
-    // Whole or not at all, whenever the power goes.
-    const fs::path draft = file.string() + ".new";
-    GRASPDB_TRY_VOID(WriteFileBytes(draft, written.dump(1)));
-    fs::rename(draft, file);
+    GRASPDB_TRY_VOID(WriteRows(file, key, rows));
     return rows;
   }
 

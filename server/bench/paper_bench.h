@@ -29,7 +29,9 @@ struct PaperBenchOrder {
   std::vector<BenchVariant> ablations;  ///< Counted without a simulator.
   bool quick{false};    ///< One novel object a category, few grasps.
   bool physical{true};  ///< Whether a simulator judges.
-  int sources{40};      ///< Per part.
+  /** For each way to seed the swarm and each part; 0: not compared. */
+  double seeding_seconds{10.0};
+  int sources{40};  ///< Per part.
   uint64_t seed{1};
 };
 

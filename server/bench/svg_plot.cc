@@ -11,7 +11,7 @@ namespace {
 constexpr double kWidth = 320.0;
 constexpr double kHeight = 240.0;
 constexpr double kLeft = 44.0;
-constexpr double kRight = 8.0;
+constexpr double kRight = 16.0;
 constexpr double kTop = 20.0;
 constexpr double kBottom = 34.0;
 constexpr int kTicks = 5;  // About so many on an axis.
@@ -123,7 +123,7 @@ class Plot {
       svg += fmt::format(
           "<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>"
           "<text x=\"{}\" y=\"{}\" class=\"l\">{}</text>",
-          kWidth - 110.0, y - 3.0, one.color, kWidth - 103.0, y,
+          kWidth - 118.0, y - 3.0, one.color, kWidth - 111.0, y,
           EscapeHtml(one.name));
       y += 11.0;
     }

@@ -46,6 +46,11 @@ void AddBench(Subcommands& commands) {
   command->add_option("--seed", order.seed, "")->capture_default_str();
   command->add_flag("--quick", order.quick,
                     "one novel object a category, eight grasps a part");
+  command
+      ->add_option("--seeding-seconds", order.seeding_seconds,
+                   "for each way to seed the swarm and each part; 0: none")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   command->add_flag("--no-physical", given->no_physical, "no simulator");
   command->add_flag("--ablations", given->ablations,
                     "the default with each of its additions left out, too");

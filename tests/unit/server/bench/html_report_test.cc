@@ -59,12 +59,12 @@ TEST(HtmlReport, AsTextNamesEveryGroup) {
                                HasSubstr("0.0 %")));
 }
 
-// x from 0 to 2 fills 268 pixels right of 44, y from 0 to 4 186 above 206.
+// x from 0 to 2 fills 260 pixels right of 44, y from 0 to 4 186 above 206.
 TEST(SvgPlot, PutsPointsWhereTheAxesSay) {
   PlotSeries series{"", "red", {1.0, 2.0}, {4.0, 0.0}};
   const std::string svg = MakeSvgPlot({series}, PlotOptions());
-  EXPECT_THAT(svg, HasSubstr("cx=\"178.0\" cy=\"20.0\""));
-  EXPECT_THAT(svg, HasSubstr("cx=\"312.0\" cy=\"206.0\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"174.0\" cy=\"20.0\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"304.0\" cy=\"206.0\""));
 }
 
 TEST(SvgPlot, WithADiagonalBothAxesReachAsFar) {
@@ -72,7 +72,7 @@ TEST(SvgPlot, WithADiagonalBothAxesReachAsFar) {
   PlotOptions options;
   options.diagonal = true;
   EXPECT_THAT(MakeSvgPlot({series}, options),
-              HasSubstr("cx=\"111.0\" cy=\"20.0\""));
+              HasSubstr("cx=\"109.0\" cy=\"20.0\""));
 }
 
 }  // namespace
