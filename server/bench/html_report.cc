@@ -103,7 +103,7 @@ const PublishedTransfer* FindPublished(const Json& row) {
   for (const PublishedTransfer& published : GetPublishedTransfers()) {
     if (row["category"] == published.category &&
         row["part"] == published.part &&
-        row["number"] == (cloud ? 0 : published.object)) {
+        published.object == (cloud ? 0 : row["number"].get<int>())) {
       return &published;
     }
   }

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLearnShare = 0.3;  // Of a variant's progress.
 constexpr int kQuickSources = 8;
+constexpr double kSeedingSeconds = 10.0;
 // Of the reconstructed mug (Table III).
 constexpr int kBodyPoints = 1000;
 constexpr int kOtherPoints = 500;
@@ -99,6 +100,11 @@ class PaperBench {
   int sources() const {
     return order_.quick ? std::min(kQuickSources, order_.sources)
                         : order_.sources;
+  }
+
+  double seeding_seconds() const {
+    return order_.seeding_seconds.value_or(order_.quick ? 0.0
+                                                        : kSeedingSeconds);
   }
 
   Result<void> WriteReports(const Json& report) const {
@@ -214,7 +220,7 @@ class PaperBench {
       GRASPDB_TRY(row, DescribeLearning(*service, space));
       result["learning"].push_back(std::move(row));
     }
-    if (physical && order_.seeding_seconds > 0.0 && !order_.quick) {
+    if (physical && seeding_seconds() > 0.0) {
       GRASPDB_TRY(seeding, RunSeeding(*service, variant, spaces, context));
       result["seeding"] = std::move(seeding);
     }
@@ -249,7 +255,7 @@ class PaperBench {
     for (const StoredGraspSpace& space : spaces) {
       const std::string key = MakeContentId(fmt::format(
           "{} {} {} {} seeding {}", EngineVersion(), space.parameters_hash,
-          order_.seed, order_.seeding_seconds, space.part_label));
+          order_.seed, seeding_seconds(), space.part_label));
       const std::string part = space.category + " " + space.part_label;
       const fs::path file = MakeRowPath(variant.name + " seeding " + part);
       std::optional<Json> rows = ReadRows(file, key);
@@ -257,8 +263,8 @@ class PaperBench {
         SubContext comparing(context, "seeding " + part, kLearnShare,
                              kLearnShare);
         GRASPDB_TRY(compared, CompareSeeding(service, space, variant.parameters,
-                                             order_.seeding_seconds,
-                                             order_.seed, comparing.context()));
+                                             seeding_seconds(), order_.seed,
+                                             comparing.context()));
         GRASPDB_TRY_VOID(WriteRows(file, key, compared));
         rows = std::move(compared);
       }

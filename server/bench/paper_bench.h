@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct PaperBenchOrder {
   std::vector<BenchVariant> ablations;  ///< Counted without a simulator.
   bool quick{false};    ///< One novel object a category, few grasps.
   bool physical{true};  ///< Whether a simulator judges.
-  /** For each way to seed the swarm and each part; 0: not compared. */
-  double seeding_seconds{10.0};
+  /** For each way to seed the swarm and each part; 0: not compared. Unset: 10,
+   or 0 when quick. */
+  std::optional<double> seeding_seconds;
   int sources{40};  ///< Per part.
   uint64_t seed{1};
 };

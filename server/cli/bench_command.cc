@@ -30,7 +30,7 @@ void AddBench(Subcommands& commands) {
       ->capture_default_str();
   command
       ->add_option("--preset", given->presets,
-                   "default, paper, JSON or a file of it; several side by side")
+                   "default, paper or a file of JSON; several side by side")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--objects", order.objects,
@@ -47,10 +47,11 @@ void AddBench(Subcommands& commands) {
   command->add_flag("--quick", order.quick,
                     "one novel object a category, eight grasps a part");
   command
-      ->add_option("--seeding-seconds", order.seeding_seconds,
-                   "for each way to seed the swarm and each part; 0: none")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
+      ->add_option(
+          "--seeding-seconds", order.seeding_seconds,
+          "for each way to seed the swarm and each part (10; none when "
+          "quick)")
+      ->check(CLI::Range(0.0, 3600.0));
   command->add_flag("--no-physical", given->no_physical, "no simulator");
   command->add_flag("--ablations", given->ablations,
                     "the default with each of its additions left out, too");

@@ -11,7 +11,7 @@ import tempfile
 def run(binary, data, out):
     subprocess.run(
         [binary, "bench", "paper", "--quick", "--category", "mug", "--sources", "4",
-         "--data", data, "--out", out],
+         "--seeding-seconds", "2", "--data", data, "--out", out],
         check=True,
     )
     return json.loads(pathlib.Path(out, "paper.json").read_text())
@@ -41,7 +41,11 @@ def main():
         assert row["physical"]["lift"]["count"] == judged, row
     for row in variant["learning"]:
         assert row["grasps"] >= 40 and row["curve"], row
-    assert html.count("<svg") == 2 + 4 * 2, html.count("<svg")
+    seeded = {(row["part"], row["seeding"]): row["tried"] for row in variant["seeding"]}
+    assert len(seeded) == 2 * 3, seeded
+    # Learning the support vectors may take all the time on a slow machine.
+    assert all(n for (_, how), n in seeded.items() if how != "support vectors"), seeded
+    assert html.count("<svg") == 2 + 2 + 4 * 2, html.count("<svg")
     assert "1343.6" not in html and ">1344<" in html, "Table I is not beside ours"
 
 

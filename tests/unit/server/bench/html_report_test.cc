@@ -53,6 +53,21 @@ TEST(HtmlReport, PutsThePapersRowBesideOurs) {
   EXPECT_THAT(html, HasSubstr(">35 / 29<"));
 }
 
+// Table III: 1000 points, 38 / 34 and 37 / 31.
+TEST(HtmlReport, PutsThePapersCloudBesideTheWholeOneOnly) {
+  Json report = MakeReport();
+  Json& row = report["variants"][0]["rows"][0];
+  row["group"] = "cloud";
+  row["number"] = 0;
+  row["object"] = "latte, all around";
+  std::string html = MakeHtmlReport(report);
+  EXPECT_THAT(html, HasSubstr(">1000<"));
+  EXPECT_THAT(html, HasSubstr(">38 / 34<"));
+  EXPECT_THAT(html, Not(HasSubstr(">752<")));
+  row["object"] = "latte, one side";
+  EXPECT_THAT(MakeHtmlReport(report), Not(HasSubstr(">1000<")));
+}
+
 TEST(HtmlReport, AsTextNamesEveryGroup) {
   EXPECT_THAT(MakeTextReport(MakeReport()),
               ::testing::AllOf(HasSubstr("default"), HasSubstr("paper"),
