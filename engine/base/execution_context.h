@@ -9,9 +9,10 @@
 namespace graspdb {
 
 /** How a long computation hears of cancellation and deadline and tells of its
- progress: the only clock the engine sees. The last argument of every long
- function. Cancelled() and Cancel() may be called from any thread;
- ReportProgress() is called from the computing threads, one at a time. */
+ progress: the only clock that what the engine computes may depend on. The last
+ argument of every long function. Cancelled() and Cancel() may be called from
+ any thread; ReportProgress() is called from the computing threads, one at a
+ time. */
 class ExecutionContext {
  public:
   using Clock = std::chrono::steady_clock;

@@ -33,6 +33,14 @@ Parameters MakePaperParameters() {
   return p;
 }
 
+Parameters SelectForLearning(const Parameters& parameters) {
+  Parameters selected = parameters;
+  selected.segmentation = {};
+  selected.mapping = {};
+  selected.replan = {};
+  return selected;
+}
+
 Result<void> ValidateParameters(const Parameters& parameters) {
   Result<void> result;
   VisitFields(parameters, [&](const std::string& path, auto value,

@@ -47,6 +47,10 @@ Parameters MakeDefaultParameters();
  segmentation, 40,000 labels, rigid alignment, joints only in replanning. */
 Parameters MakePaperParameters();
 
+/** What learning depends on, all else at its default: two sets that differ
+ elsewhere lead to the same grasp space. */
+Parameters SelectForLearning(const Parameters& parameters);
+
 /** Calls visit(path, value, info) for every field, path being "swarm.radius".
  */
 template <class Visit>

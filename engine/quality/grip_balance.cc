@@ -48,9 +48,11 @@ std::vector<LoadedJoint> FindLoadedJoints(
           one.locks ||
           model.joints()[static_cast<size_t>(*outer)].breakaway_ratio > 0.0;
     }
-    for (int link = 0; link < model.num_links() && !one.slides; ++link) {
-      one.lever = link == 0 ? 0.0 : one.lever;
-      one.lever = std::max(one.lever, hand.motion_bound(link, j));
+    if (!one.slides) {
+      one.lever = 0.0;
+      for (int link = 0; link < model.num_links(); ++link) {
+        one.lever = std::max(one.lever, hand.motion_bound(link, j));
+      }
     }
     loaded.push_back(one);
   }

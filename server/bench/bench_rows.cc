@@ -75,6 +75,13 @@ double FindSeconds(const StoredTransfer& transfer, const std::string& stage,
   return 0.0;
 }
 
+// Adds one proportion to another, which may not be there yet.
+void AddProportion(const Json& row, Json& sum) {
+  if (sum.is_null()) sum = EncodeProportion(0, 0);
+  sum = EncodeProportion(sum["hits"].get<int>() + row["hits"].get<int>(),
+                         sum["count"].get<int>() + row["count"].get<int>());
+}
+
 }  // namespace
 
 Json EncodeProportion(int hits, int count) {
@@ -202,17 +209,6 @@ Json MakeFailedRow(const std::string& part, int attempts, const Error& error) {
   row["error"] = error.message;
   return row;
 }
-
-namespace {
-
-// Adds one proportion to another, which may not be there yet.
-void AddProportion(const Json& row, Json& sum) {
-  if (sum.is_null()) sum = EncodeProportion(0, 0);
-  sum = EncodeProportion(sum["hits"].get<int>() + row["hits"].get<int>(),
-                         sum["count"].get<int>() + row["count"].get<int>());
-}
-
-}  // namespace
 
 Json PoolRows(const std::vector<Json>& rows) {
   Json pool;

@@ -203,7 +203,11 @@ class PaperBench {
   Result<Json> RunVariant(const BenchVariant& variant,
                           const std::vector<Item>& items, bool physical,
                           ExecutionContext& context) {
-    GRASPDB_TRY(service, open_(fs::path(order_.out) / "bench.db"));
+    // A transfer takes the grasp space that was learned last: a file for each
+    // way to learn, so that no variant takes another's.
+    const std::string learning_id =
+        MakeContentId(ParametersToJson(SelectForLearning(variant.parameters)));
+    GRASPDB_TRY(service, open_(fs::path(order_.out) / (learning_id + ".db")));
     PopulateOrder populate;
     populate.folder = order_.data;
     populate.categories = order_.categories;
@@ -374,12 +378,18 @@ class PaperBench {
     }
     GRASPDB_TRY(grasps, ReadGrasps(service, answer->transfer.id));
     std::vector<Json> rows;
-    for (const StoredPart& part : answer->parts) {
-      const auto& wanted = answer->transfer.part_labels;
-      if (std::find(wanted.begin(), wanted.end(), part.label) == wanted.end()) {
-        continue;
-      }
-      rows.push_back(MakeTransferRow(answer->transfer, part, grasps, further));
+    GRASPDB_TRY(category, service.store().FindCategory(item.category));
+    for (const CategoryPart& wanted : category.parts) {
+      const auto part = std::find_if(
+          answer->parts.begin(), answer->parts.end(),
+          [&](const StoredPart& one) { return one.label == wanted.label; });
+      // A part that was not found is so many grasps that failed, too.
+      rows.push_back(
+          part == answer->parts.end()
+              ? MakeFailedRow(wanted.label, sources(),
+                              {ErrorCode::kNotInCategory,
+                               "no " + wanted.label + " was found", ""})
+              : MakeTransferRow(answer->transfer, *part, grasps, further));
       rows.back()["similarity"] = answer->transfer.similarity;
       rows.back()["warnings"] = answer->transfer.warnings;
     }

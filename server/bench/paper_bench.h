@@ -37,15 +37,16 @@ struct PaperBenchOrder {
   uint64_t seed{1};
 };
 
-/** Opens the database file of a variant. */
+/** Opens a database file, new or not. */
 using OpenService =
     std::function<Result<std::unique_ptr<Service>>(const std::string& db)>;
 
 /** Learns the examples, transfers to every novel object, assembles, compares
  and lets a simulator judge: all tables and figures of the paper, and more. What
  was done before with the same order is read from `out`, so that it may be
- interrupted at any time. Deterministic but for what is named "seconds" and
- "machine". Writes out/paper.json and out/paper.html.
+ interrupted at any time. Deterministic but for what is named "seconds",
+ "machine" and "seeding", which time ends. Writes out/paper.json and
+ out/paper.html.
  @returns the JSON.
  @retval kInvalidArgument naming the file at fault; kCancelled. */
 Result<Json> RunPaperBench(const PaperBenchOrder& order,

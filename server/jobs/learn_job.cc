@@ -44,15 +44,6 @@ Result<std::vector<Lesson>> ListLessons(const Store& store,
   return lessons;
 }
 
-// What learning depends on: the rest does not make another grasp space.
-Parameters SelectForLearning(const Parameters& parameters) {
-  Parameters selected = parameters;
-  selected.segmentation = {};
-  selected.mapping = {};
-  selected.replan = {};
-  return selected;
-}
-
 StoredGraspSpace DescribeLesson(const Lesson& lesson,
                                 const StoredObject& object,
                                 const LearnOrder& order) {
