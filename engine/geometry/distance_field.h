@@ -33,6 +33,36 @@ class DistanceField {
     return Interpolate(u);
   }
 
+  /** The slope of Calc() at p, out of the solid, not normalised; zero outside
+   the grid. */
+  Eigen::Vector3d CalcGradient(const Eigen::Vector3d& p_M) const {
+    const Eigen::Vector3d u = (p_M - origin_) * inverse_cell_;
+    if (!(u.minCoeff() >= 0.0 && (u.array() <= last_.array()).all())) {
+      return Eigen::Vector3d::Zero();
+    }
+    std::array<int, 3> i;
+    std::array<double, 3> t;
+    for (int k = 0; k < 3; ++k) {
+      i[k] = std::min(static_cast<int>(u[k]), count_[k] - 2);
+      t[k] = u[k] - i[k];
+    }
+    const float* v = &values_[i[0] + stride_y_ * i[1] + stride_z_ * i[2]];
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    for (int c = 0; c < 8; ++c) {
+      const int x = c & 1;
+      const int y = (c >> 1) & 1;
+      const int z = c >> 2;
+      const double value = v[x + stride_y_ * y + stride_z_ * z];
+      const double wx = x == 1 ? t[0] : 1.0 - t[0];
+      const double wy = y == 1 ? t[1] : 1.0 - t[1];
+      const double wz = z == 1 ? t[2] : 1.0 - t[2];
+      gradient += value * Eigen::Vector3d((x == 1 ? 1.0 : -1.0) * wy * wz,
+                                          (y == 1 ? 1.0 : -1.0) * wx * wz,
+                                          (z == 1 ? 1.0 : -1.0) * wx * wy);
+    }
+    return inverse_cell_ * gradient;
+  }
+
   /** A proven bound of the interpolation's error: distance has Lipschitz
    constant one, so the error is at most the weighted mean distance to the
    cell's corners, √3/2 cells at its centre. */

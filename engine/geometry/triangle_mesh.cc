@@ -53,6 +53,20 @@ MassProperties CalcMassProperties(const TriangleMesh& mesh) {
   for (const Eigen::Vector3d& p : mesh.vertices()) {
     result.max_radius = std::max(result.max_radius, (p - result.p_McCM).norm());
   }
+  if (result.volume == 0.0) return result;
+  // ∫ p pᵀ over the tetrahedra between the mass centre and the faces.
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (int f = 0; f < mesh.num_triangles(); ++f) {
+    const Eigen::Vector3d a = mesh.corner(f, 0) - result.p_McCM;
+    const Eigen::Vector3d b = mesh.corner(f, 1) - result.p_McCM;
+    const Eigen::Vector3d c = mesh.corner(f, 2) - result.p_McCM;
+    const Eigen::Vector3d s = a + b + c;
+    second += a.dot(b.cross(c)) / 120.0 *
+              (s * s.transpose() + a * a.transpose() + b * b.transpose() +
+               c * c.transpose());
+  }
+  second /= result.volume;
+  result.gyration = second.trace() * Eigen::Matrix3d::Identity() - second;
   return result;
 }
 

@@ -63,6 +63,8 @@ struct MassProperties {
   double area{0.0};    ///< m².
   Eigen::Vector3d p_McCM{Eigen::Vector3d::Zero()};  ///< Mass centre in M, m.
   double max_radius{0.0};  ///< Farthest vertex from the mass centre, m.
+  /** Inertia about the mass centre over mass, in M's axes, m². */
+  Eigen::Matrix3d gyration{Eigen::Matrix3d::Zero()};
 };
 
 /** By the divergence theorem over the faces. @pre The mesh is closed. */

@@ -88,6 +88,50 @@ struct GripParameters {
   bool operator==(const GripParameters&) const = default;
 };
 
+/** What a ClosingSimulation simulates, and what counts as held. */
+struct HoldParameters {
+  double mass{0.1};
+  double closing_speed{1.0};
+  double closing_force{5.0};
+  double holding_force{15.0};
+  double stiffness{100.0};
+  double contact_stiffness{5e4};
+  double push{0.0};
+  double push_seconds{0.3};
+  double settle_seconds{0.06};
+  double max_shift{0.02};
+  double max_turn{0.2617993877991494};
+  double time_step{0.002};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("mass", self.mass, ParameterInfo{"kg", 1e-3, 100, "ours: of the object"});
+    f("closing_speed", self.closing_speed,
+      ParameterInfo{"rad/s", 1e-3, 100, "ours: of a motor"});
+    f("closing_force", self.closing_force,
+      ParameterInfo{"N", 0, 1e3, "ours: as hard as fingers close"});
+    f("holding_force", self.holding_force,
+      ParameterInfo{"N", 0, 1e3, "BH8-280: 15 N at the fingertip"});
+    f("stiffness", self.stiffness,
+      ParameterInfo{"N m/rad", 1, 1e6, "ours: of a joint until it yields"});
+    f("contact_stiffness", self.contact_stiffness,
+      ParameterInfo{"N/m", 1, 1e9, "ours: of a point of the skin"});
+    f("push", self.push,
+      ParameterInfo{"N", 0, 1e3, "ours: what a grip is to withstand"});
+    f("push_seconds", self.push_seconds,
+      ParameterInfo{"s", 1e-3, 100, "ours: long enough to get going"});
+    f("settle_seconds", self.settle_seconds,
+      ParameterInfo{"s", 1e-3, 100, "ours: at rest for so long"});
+    f("max_shift", self.max_shift,
+      ParameterInfo{"m", 1e-4, 1, "ours: beyond it the object is lost"});
+    f("max_turn", self.max_turn,
+      ParameterInfo{"rad", 1e-3, 3.2, "ours: beyond it the object is lost"});
+    f("time_step", self.time_step,
+      ParameterInfo{"s", 1e-4, 0.02, "ours: as long as it stays true"});
+  }
+  bool operator==(const HoldParameters&) const = default;
+};
+
 /** When two grasps count as two. */
 struct DistinctParameters {
   double position{0.010};

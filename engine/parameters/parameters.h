@@ -15,6 +15,7 @@ struct Parameters {
   ContactParameters contact;
   HybridParameters hybrid;
   GripParameters grip;
+  HoldParameters hold;
   ActiveLearningParameters active_learning;
   SwarmParameters swarm;
   DistinctParameters distinct;
@@ -29,6 +30,7 @@ struct Parameters {
     f("contact", self.contact);
     f("hybrid", self.hybrid);
     f("grip", self.grip);
+    f("hold", self.hold);
     f("active_learning", self.active_learning);
     f("swarm", self.swarm);
     f("distinct", self.distinct);

@@ -123,9 +123,9 @@ struct ReplanParameters {
   double trust_translation{0.010};
   double trust_rotation{0.17453292519943295};
   double grip_weight{10.0};
-  int grip_copies{8};
+  int grip_copies{16};
   double enough_grip{0.9};
-  int grip_cycles{8};
+  int climb_samples{200};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -175,10 +175,12 @@ struct ReplanParameters {
                     "ours: perturbed copies that choose between grasps; 0: "
                     "eps chooses"});
     f("enough_grip", self.enough_grip,
-      ParameterInfo{"1", 0, 1,
-                    "ours: share of them that the motors hold, to stop at"});
-    f("grip_cycles", self.grip_cycles,
-      ParameterInfo{"1", 0, 1000, "ours: annealings at most to get there"});
+      ParameterInfo{
+          "1", 0, 1,
+          "ours: share of them that are held; beyond it eps chooses"});
+    f("climb_samples", self.climb_samples,
+      ParameterInfo{"1", 0, 1e6,
+                    "ours: tries around the best to get there, at most"});
   }
   bool operator==(const ReplanParameters&) const = default;
 };

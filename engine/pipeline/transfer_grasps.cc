@@ -49,7 +49,11 @@ class Transferrer {
         parameters_(request.parameters),
         context_(context),
         hand_(request.hand),
-        parts_N_(request.novel) {}
+        parts_N_(request.novel),
+        on_part_(request.parameters) {
+    // What is to hold in the end is the whole.
+    if (request.assemble) on_part_.replan.climb_samples = 0;
+  }
 
   Result<TransferResult> Run() {
     // The forty are fixed before the novel object is looked at.
@@ -201,7 +205,7 @@ class Transferrer {
 
     // Sec. V-B: a stable grasp of the part …
     const double start = ThreadSeconds();
-    ReplanResult on_part = Replan(hand_, task, *pair.solid_N, parameters_,
+    ReplanResult on_part = Replan(hand_, task, *pair.solid_N, on_part_,
                                   DeriveSeed(request_.seed, {kReplan, p, s}));
     const double replanned = ThreadSeconds();
     record.transfer_seconds = replanned - start;
@@ -273,8 +277,7 @@ class Transferrer {
   }
 
   // Fills in what is not needed while searching.
-  Grasp Complete(const Grasp& found, const Solid& solid) const {
-    Grasp grasp = TimeFingers(hand_, found, solid, parameters_);
+  Grasp Complete(Grasp grasp, const Solid& solid) const {
     grasp.quality.hybrid = CalcHybrid(hand_, grasp, solid, parameters_);
     grasp.quality.volume = CalcWrenchVolume(
         CalcContactWrenches(grasp.contacts, solid.mass(), parameters_.contact));
@@ -289,6 +292,7 @@ class Transferrer {
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
   const PartSurfaces parts_N_;
+  Parameters on_part_;
 };
 
 }  // namespace

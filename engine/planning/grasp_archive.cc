@@ -15,17 +15,17 @@ double CalcGraspDifference(const Grasp& a, const Grasp& b,
          (x.q - y.q).cwiseAbs().maxCoeff() / parameters.joint;
 }
 
+bool GraspArchive::Wants(const Grasp& grasp) const {
+  return std::none_of(grasps_.begin(), grasps_.end(), [&](const Grasp& other) {
+    return IsNear(grasp, other) &&
+           other.quality.epsilon >= grasp.quality.epsilon;
+  });
+}
+
 bool GraspArchive::Insert(const Grasp& grasp) {
-  const auto near = [&](const Grasp& other) {
-    return CalcGraspDifference(grasp, other, parameters_) < 1.0;
-  };
-  const bool beaten =
-      std::any_of(grasps_.begin(), grasps_.end(), [&](const Grasp& other) {
-        return near(other) && other.quality.epsilon >= grasp.quality.epsilon;
-      });
-  if (beaten) return false;
-  grasps_.erase(std::remove_if(grasps_.begin(), grasps_.end(), near),
-                grasps_.end());
+  if (!Wants(grasp)) return false;
+  std::erase_if(grasps_,
+                [&](const Grasp& other) { return IsNear(grasp, other); });
   grasps_.push_back(grasp);
   return true;
 }

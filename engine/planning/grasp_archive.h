@@ -19,6 +19,8 @@ class GraspArchive {
   explicit GraspArchive(const DistinctParameters& parameters)
       : parameters_(parameters) {}
 
+  /** Whether Insert() would keep it. */
+  bool Wants(const Grasp& grasp) const;
   /** True when the grasp was kept. */
   bool Insert(const Grasp& grasp);
 
@@ -29,6 +31,10 @@ class GraspArchive {
   std::vector<Grasp> MakeSorted() const;
 
  private:
+  bool IsNear(const Grasp& a, const Grasp& b) const {
+    return CalcGraspDifference(a, b, parameters_) < 1.0;
+  }
+
   DistinctParameters parameters_;
   std::vector<Grasp> grasps_;
 };

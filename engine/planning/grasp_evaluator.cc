@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/random.h"
+#include "engine/dynamics/closing_simulation.h"
 #include "engine/geometry/surface_patch.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/quality/contact_extraction.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kRobustShift = 0.003;              // m
 constexpr double kRobustTurn = 3.0 * M_PI / 180.0;  // rad
 constexpr double kRobustFriction = 0.2;
+// When grasps are compared, one is given up after so many lost copies.
+constexpr int kHopeless = 4;
 // Shares of a motor's range that are tried in turn, see TimeFingers().
 constexpr double kTravels[] = {0.5, 0.35, 0.25, 0.125, 0.06, 0.03};
 constexpr double kSameJoints = 0.01;           // rad; section "reachable".
@@ -146,9 +149,7 @@ Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
                 .cwiseAbs()
                 .maxCoeff() <= kSameJoints &&
         IsReachable(hand, timed.grasp, solid)) {
-      Grasp result = grasp;
-      result.q_pregrasp = timed.grasp.q_pregrasp;
-      return result;
+      return timed.grasp;
     }
   }
   return grasp;
@@ -165,12 +166,16 @@ double CalcGrip(const HandShape& hand, const Grasp& grasp,
 
 Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
                           const Solid& solid, const Parameters& parameters,
-                          uint64_t seed, int copies, double least_gripped) {
+                          uint64_t seed, const RobustnessOptions& options) {
+  const ClosingSimulation simulation(hand, solid, parameters.hold);
+  const int copies = options.copies;
+  const double least = options.least_gripped;
   Random random(seed);
   int stable = 0;
   int gripped = 0;
   for (int i = 0; i < copies; ++i) {
-    if (gripped + copies - i < least_gripped * copies) break;
+    if (gripped + copies - i < least * copies) break;
+    if (least > 0.0 && gripped == 0 && i == kHopeless) break;
     RigidTransform X_OH = grasp.configuration.X_OH;
     X_OH.translation += kRobustShift * random.NextInUnitBall();
     X_OH.rotation = X_OH.rotation * random.NextRotationWithin(kRobustTurn);
@@ -181,8 +186,9 @@ Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
         hand, X_OH, grasp.q_pregrasp, solid, perturbed, Precision::kEstimated);
     if (!copy.ok()) continue;
     ++stable;
-    const double enough = parameters.grip.max_residual;
-    if (CalcGrip(hand, copy.grasp, solid.mass(), perturbed, enough) <= enough) {
+    if (options.gripped &&
+        simulation.Run(X_OH, grasp.q_pregrasp, perturbed.contact.friction)
+            .held) {
       ++gripped;
     }
   }

@@ -50,9 +50,9 @@ double CalcHybrid(const HandShape& hand, const Grasp& grasp, const Solid& solid,
  grasp.approach_O, without touching the solid. */
 bool IsReachable(const HandShape& hand, const Grasp& grasp, const Solid& solid);
 
-/** The grasp with each finger, before it closes, as far from where it meets the
- object as the others: at equal speed all meet it together, and none pushes it
- away. As far as they open, or less where the hand could not come along its
+/** The grasp, closed anew with each finger, before, as far from where it meets
+ the object as the others: at equal speed all meet it together, and none pushes
+ it away. As far as they open, or less where the hand could not come along its
  approach so, or the fingers would end elsewhere; unchanged where nothing does.
  */
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
@@ -64,19 +64,22 @@ double CalcGrip(const HandShape& hand, const Grasp& grasp,
                 const MassProperties& mass, const Parameters& parameters,
                 double enough = 1e300);
 
-/** Copies that a reported robustness is the share of. */
-inline constexpr int kRobustCopies = 32;
+/** How closely robustness is looked at: as reported, when nothing is said. */
+struct RobustnessOptions {
+  int copies{32};
+  bool gripped{true};  ///< Whether grip matters; else it is left at 0.
+  /** When not 0, only grasps that are gripped so often matter: once that is out
+   of reach, or not one of the first four is, the shares so far are told. */
+  double least_gripped{0.0};
+};
 
-/** Of `copies`, the hand moved uniformly within a 3 mm ball and turned within 3
- degrees, friction changed within ±20 %, fingers closed again, by estimate, from
- the pre-grasp. Gripped are those whose CalcGrip() is at most
- grip.max_residual.
- @param least_gripped  Once the share cannot reach this any more, the shares so
-   far. */
+/** Of so many copies, the hand moved uniformly within a 3 mm ball and turned
+ within 3 degrees, friction changed within ±20 %, fingers closed again, by
+ estimate, from the pre-grasp. Gripped are those stable ones that a
+ ClosingSimulation finds to be held. */
 Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
                           const Solid& solid, const Parameters& parameters,
-                          uint64_t seed, int copies = kRobustCopies,
-                          double least_gripped = 0.0);
+                          uint64_t seed, const RobustnessOptions& options = {});
 
 /** The deepest that a point of either surface lies inside the other solid, m,
  surfaces sampled every millimetre near each other; 0 without overlap. */

@@ -256,14 +256,18 @@ class Swarm {
       particle.stale = 0;
     }
     if (!evaluated.ok() ||
-        (swarm_.min_grip > 0.0 && grip > parameters_.grip.max_residual) ||
-        !IsRobust(evaluated.grasp, seed)) {
+        (swarm_.min_grip > 0.0 && grip > parameters_.grip.max_residual)) {
       return;
     }
     evaluated = CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
-    if (evaluated.ok() && HoldsOnWhole(evaluated.grasp) &&
-        IsReachable(hand_, evaluated.grasp, obstacle_)) {
-      particle.found = std::move(evaluated.grasp);
+    if (!evaluated.ok() || !archive_.Wants(evaluated.grasp)) return;
+    for (const Grasp& grasp :
+         {TimeFingers(hand_, evaluated.grasp, part_, parameters_),
+          evaluated.grasp}) {
+      // The rest of the object may be in the way of open fingers.
+      if (!IsReachable(hand_, grasp, obstacle_)) continue;
+      if (HoldsOnWhole(grasp) && IsRobust(grasp, seed)) particle.found = grasp;
+      return;
     }
   }
 
@@ -287,7 +291,9 @@ class Swarm {
     if (swarm_.min_robustness == 0.0 && swarm_.min_grip == 0.0) return true;
     const Robustness robustness =
         CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
-                       swarm_.robust_copies, swarm_.min_grip);
+                       {.copies = swarm_.robust_copies,
+                        .gripped = swarm_.min_grip > 0.0,
+                        .least_gripped = swarm_.min_grip});
     return robustness.stable >= swarm_.min_robustness &&
            robustness.gripped >= swarm_.min_grip;
   }

@@ -47,24 +47,6 @@ std::string FormatPose(const RigidTransform& X) {
                      q.w(), q.x(), q.y(), q.z());
 }
 
-// About the mass centre of a uniform solid of this mass: ∫ p pᵀ over the
-// tetrahedra between it and the faces.
-Eigen::Matrix3d CalcInertia(const TriangleMesh& mesh,
-                            const MassProperties& properties, double mass) {
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (int f = 0; f < mesh.num_triangles(); ++f) {
-    const Eigen::Vector3d a = mesh.corner(f, 0) - properties.p_McCM;
-    const Eigen::Vector3d b = mesh.corner(f, 1) - properties.p_McCM;
-    const Eigen::Vector3d c = mesh.corner(f, 2) - properties.p_McCM;
-    const Eigen::Vector3d s = a + b + c;
-    second += a.dot(b.cross(c)) / 120.0 *
-              (s * s.transpose() + a * a.transpose() + b * b.transpose() +
-               c * c.transpose());
-  }
-  second *= mass / properties.volume;
-  return second.trace() * Eigen::Matrix3d::Identity() - second;
-}
-
 // From a joint's axis to the farthest point of what it moves: m.
 double CalcLever(const HandModel& hand, int joint) {
   const auto X_HL =
@@ -132,7 +114,7 @@ class SceneWriter {
 
   void WriteObject(const TriangleMesh& mesh_O) {
     const MassProperties properties = CalcMassProperties(mesh_O);
-    const Eigen::Matrix3d I = CalcInertia(mesh_O, properties, test_.mass);
+    const Eigen::Matrix3d I = test_.mass * properties.gyration;
     object_body_ = fmt::format(
         "<body name=\"object\"><freejoint/><inertial pos=\"{}\""
         " mass=\"{}\" fullinertia=\"{} {} {} {} {} {}\"/>",

@@ -21,6 +21,10 @@ constexpr double kWithinLimits = 0.98;
 // Annealings that follow one another draw from nearer and from farther around,
 // shares of the trust region.
 constexpr double kReaches[] = {1.0, 0.5, 1.5};
+// A share of copies below which it does not matter how many there are.
+constexpr double kLeastGrip = 0.05;
+// Samples around the best grasp come from farther and from nearer, likewise.
+constexpr double kClimbReaches[] = {1.5, 0.6};
 // The residual, N, that stands for no grip at all in the objective.
 constexpr double kNoGrip = 5.0;
 // How far the hand's frame reaches when the wrist is fitted, metres.
@@ -90,15 +94,8 @@ class Replanner {
     do {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles);
-    // Every second one goes on from the best grasp so far.
-    for (cycle = 0;
-         best_ && replan_.grip_copies > 0 &&
-         merit_.gripped < replan_.enough_grip && cycle < replan_.grip_cycles;
-         ++cycle) {
-      Anneal(cycle % 2 == 0 ? best_start_ : ranked[cycle / 2 % ranked.size()],
-             kReaches[cycle % 3]);
-    }
     if (!best_) return {furthest_, std::nullopt};
+    if (replan_.grip_copies > 0) Climb();
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
 
@@ -185,35 +182,50 @@ class Replanner {
     }
   }
 
+  // From the best grasp to better ones around it; once the grip is enough, as
+  // long as eps grows.
+  void Climb() {
+    int since_gain = 0;
+    for (int i = 0; i < replan_.climb_samples; ++i) {
+      if (merit_.gripped >= replan_.enough_grip &&
+          since_gain >= replan_.patience) {
+        break;
+      }
+      const int gains_before = num_gains_;
+      const auto next = DrawFree(best_sample_, kClimbReaches[i % 2]);
+      if (next) Evaluate(*next);
+      since_gain = num_gains_ == gains_before ? since_gain + 1 : 0;
+    }
+  }
+
   // What chooses between grasps: how sure the grip is, then eps.
   struct Merit {
-    double gripped{-1.0};  // Share of perturbed copies; -1: no grasp.
+    double gripped{-1.0};    // Up to what is enough; -1: no grasp.
+    double unbalanced{0.0};  // Minus the residual until it is enough …
     double epsilon{0.0};
 
     auto operator<=>(const Merit&) const = default;
   };
 
   Merit CalcMerit(const Grasp& grasp) const {
-    Merit merit{0.0, grasp.quality.epsilon};
+    Merit merit{0.0, 0.0, grasp.quality.epsilon};
     if (replan_.grip_copies == 0) return merit;
-    merit.gripped = CalcRobustness(hand_, grasp, solid_, parameters_, seed_,
-                                   replan_.grip_copies, merit_.gripped)
-                        .gripped;
+    const double least = std::max(kLeastGrip, merit_.gripped);
+    const double share =
+        CalcRobustness(hand_, grasp, solid_, parameters_, seed_,
+                       {.copies = replan_.grip_copies, .least_gripped = least})
+            .gripped;
+    merit.gripped = std::min(share, replan_.enough_grip);
+    if (merit.gripped < replan_.enough_grip) {
+      merit.unbalanced = -CalcGrip(hand_, grasp, solid_.mass(), parameters_);
+    }
     return merit;
   }
 
-  // Whether it is worth a closer look: without copies only by eps, else by
-  // whether it is gripped itself.
-  bool MayBeBetter(const Grasp& grasp, double grip) const {
-    if (!best_) return true;
-    const bool higher = grasp.quality.epsilon > merit_.epsilon;
-    if (replan_.grip_copies == 0) return higher;
-    if (merit_.gripped >= 1.0) {
-      return higher && grip <= parameters_.grip.max_residual;
-    }
-    return merit_.gripped > 0.0
-               ? grip <= parameters_.grip.max_residual
-               : higher || grip <= parameters_.grip.max_residual;
+  // Whether it is worth a closer look.
+  bool MayBeBetter(const Grasp& grasp) const {
+    return !best_ || grasp.quality.epsilon > merit_.epsilon ||
+           (replan_.grip_copies > 0 && merit_.gripped < replan_.enough_grip);
   }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
@@ -230,31 +242,28 @@ class Replanner {
     }
     const Grasp& grasp = evaluated.grasp;
     if (q_closed != nullptr) *q_closed = grasp.configuration.q;
-    const bool uses_grip = replan_.grip_weight > 0.0 || replan_.grip_copies > 0;
     const double grip =
-        evaluated.ok() && uses_grip
+        evaluated.ok() && replan_.grip_weight > 0.0
             ? std::min(kNoGrip,
                        CalcGrip(hand_, grasp, solid_.mass(), parameters_))
             : kNoGrip;
-    if (evaluated.ok() && MayBeBetter(grasp, grip) && Counts(grasp)) {
+    if (evaluated.ok() && MayBeBetter(grasp) && Counts(grasp)) {
       // What is kept is exact.
       const EvaluatedGrasp exact =
           CloseAndJudge(hand_, sample.X_NH, q, solid_, parameters_);
       Note(ToOutcome(exact.failure));
       if (exact.ok() && Counts(exact.grasp)) {
-        const Merit merit = CalcMerit(exact.grasp);
-        if (merit > merit_ && CanBeReached(exact.grasp)) {
-          best_ = exact.grasp;
+        const Grasp timed =
+            TimeFingers(hand_, exact.grasp, solid_, parameters_);
+        const Merit merit = CalcMerit(timed);
+        if (merit > merit_ && Counts(timed) && CanBeReached(timed)) {
+          best_ = timed;
           merit_ = merit;
-          best_start_ = {sample, CalcValue(exact.grasp, grip)};
+          best_sample_ = sample;
           ++num_gains_;
         }
       }
     }
-    return CalcValue(grasp, grip);
-  }
-
-  double CalcValue(const Grasp& grasp, double grip) const {
     return CalcReplanObjective(CalcGoals(grasp), grasp.configuration.q, task_.q,
                                grasp.quality.epsilon,
                                parameters_.hybrid.epsilon_floor, replan_) +
@@ -335,8 +344,8 @@ class Replanner {
   const uint64_t seed_;
   Random random_;
   std::optional<Grasp> best_;
-  Merit merit_;       // Of the best …
-  Rated best_start_;  // … and how it came about.
+  Merit merit_;         // Of the best …
+  Sample best_sample_;  // … and how it came about.
   int num_gains_{0};
   TransferOutcome furthest_{TransferOutcome::kPalmCollision};
 };

@@ -504,6 +504,14 @@ std::vector<BenchVariant> MakeAblations() {
           [](Parameters& p) { p.swarm.min_robustness = 0.0; });
   without("examples that hold on the whole",
           [](Parameters& p) { p.swarm.hold_on_whole = false; });
+  without("examples that the motors hold",
+          [](Parameters& p) { p.swarm.min_grip = 0.0; });
+  without("climbing to a surer grip",
+          [](Parameters& p) { p.replan.climb_samples = 0; });
+  without("the motors' balance in Eq. (6)",
+          [](Parameters& p) { p.replan.grip_weight = 0.0; });
+  without("grip when grasps are chosen",
+          [](Parameters& p) { p.replan.grip_copies = 0; });
   without("niches", [](Parameters& p) { p.swarm.niches = false; });
   return ablations;
 }

@@ -39,6 +39,18 @@ TEST_F(FieldOfABox, IsAccurateNextToTheSurface) {
   EXPECT_GT(near, 500);
 }
 
+TEST_F(FieldOfABox, RisesOutOfTheNearestFaceByOneMetrePerMetre) {
+  for (const double above : {-0.004, -0.0005, 0.0, 0.0007, 0.005}) {
+    const Eigen::Vector3d top =
+        field_.CalcGradient({0.01, 0.005, 0.045 + above});
+    EXPECT_NEAR((top - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-4) << above;
+    const Eigen::Vector3d left =
+        field_.CalcGradient({-0.03 - above, 0.002, -0.01});
+    EXPECT_NEAR((left + Eigen::Vector3d::UnitX()).norm(), 0.0, 1e-4) << above;
+  }
+  EXPECT_EQ(field_.CalcGradient({0.0, 0.0, 1.0}), Eigen::Vector3d::Zero());
+}
+
 TEST_F(FieldOfABox, FarAwayItIsTheDistanceToTheGrid) {
   const double far = field_.Calc({1.0, 0, 0});
   EXPECT_LE(far, 0.97 + 1e-9);

@@ -32,6 +32,10 @@ TEST(MassProperties, OfATetrahedronAreTheTextbooks) {
   EXPECT_NEAR(mass.volume, 1.0 / 6, 1e-15);
   EXPECT_TRUE(mass.p_McCM.isApprox(Eigen::Vector3d::Constant(0.25), 1e-14));
   EXPECT_NEAR(mass.max_radius, std::sqrt(11.0) / 4, 1e-14);
+  // Mean of x² less the centre's: 1/10 - 1/16; of xy: 1/20 - 1/16.
+  Eigen::Matrix3d gyration = Eigen::Matrix3d::Constant(1.0 / 80);
+  gyration.diagonal().setConstant(2 * 3.0 / 80);
+  EXPECT_TRUE(mass.gyration.isApprox(gyration, 1e-14));
 }
 
 TEST(MassProperties, MoveWithTheMeshAndGrowWithTheCubeOfScale) {
@@ -45,6 +49,8 @@ TEST(MassProperties, MoveWithTheMeshAndGrowWithTheCubeOfScale) {
       CalcMassProperties(CalcTransformed(mesh, X_AM, 2.0));
   EXPECT_NEAR(after.volume, 8 * before.volume, 1e-10);
   EXPECT_NEAR((after.p_McCM - X_AM * (2.0 * before.p_McCM)).norm(), 0, 1e-10);
+  EXPECT_TRUE(after.gyration.isApprox(
+      4.0 * X_AM.rotation * before.gyration * X_AM.rotation.transpose(), 1e-9));
 }
 
 TEST(IsClosed, HoldsForASolidOnly) {

