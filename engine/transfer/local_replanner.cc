@@ -75,7 +75,7 @@ bool PalmCollides(const HandShape& hand, const RigidTransform& X_NH,
                       solid);
 }
 
-// Annealing of one grasp on one solid.
+// Annealing of one grasp on one solid, and the climb from what it finds.
 class Replanner {
  public:
   Replanner(const HandShape& hand, const TransferTask& task, const Solid& solid,
@@ -198,10 +198,11 @@ class Replanner {
     }
   }
 
-  // What chooses between grasps: how sure the grip is, then eps.
+  // What chooses between grasps: how sure the grip is, then, as long as that is
+  // not enough, how well the motors' forces balance, then eps.
   struct Merit {
     double gripped{-1.0};    // Up to what is enough; -1: no grasp.
-    double unbalanced{0.0};  // Minus the residual until it is enough …
+    double unbalanced{0.0};  // Minus CalcGrip(); 0 when gripped is enough.
     double epsilon{0.0};
 
     auto operator<=>(const Merit&) const = default;

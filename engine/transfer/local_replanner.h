@@ -46,9 +46,11 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 
 /** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
  aimed_starts, from FitWrist(). Each sample that collides is replaced by up to
- extra_samples others; each free one closes its fingers, and the stable,
- reachable, near-enough grasp with the largest ε is the answer. Deterministic
- for a seed. @paper{Sec. V-B} */
+ extra_samples others; each free one closes its fingers, its pre-grasp timed by
+ TimeFingers(). Of the stable, reachable, near-enough grasps the answer is the
+ one with the largest ε, or, with grip_copies, the one that the most perturbed
+ copies hold, up to enough_grip, then ε; climb_samples more are then tried
+ around the best. Deterministic for a seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed);

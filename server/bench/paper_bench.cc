@@ -484,36 +484,4 @@ Result<Json> RunPaperBench(const PaperBenchOrder& order,
   return PaperBench(order, open, context).Run();
 }
 
-std::vector<BenchVariant> MakeAblations() {
-  std::vector<BenchVariant> ablations;
-  const auto without = [&ablations](const std::string& name,
-                                    const auto& change) {
-    ablations.push_back({"default without " + name, MakeDefaultParameters()});
-    change(ablations.back().parameters);
-  };
-  without("the wrist's motion",
-          [](Parameters& p) { p.replan.move_wrist = false; });
-  without("aimed starts", [](Parameters& p) { p.replan.aimed_starts = false; });
-  without("repeated annealing", [](Parameters& p) { p.replan.cycles = 1; });
-  without("bending", [](Parameters& p) { p.mapping.warp_steps = 0; });
-  without("affine mapping and bending", [](Parameters& p) {
-    p.mapping.affine = false;
-    p.mapping.warp_steps = 0;
-  });
-  without("robust examples",
-          [](Parameters& p) { p.swarm.min_robustness = 0.0; });
-  without("examples that hold on the whole",
-          [](Parameters& p) { p.swarm.hold_on_whole = false; });
-  without("examples that the motors hold",
-          [](Parameters& p) { p.swarm.min_grip = 0.0; });
-  without("climbing to a surer grip",
-          [](Parameters& p) { p.replan.climb_samples = 0; });
-  without("the motors' balance in Eq. (6)",
-          [](Parameters& p) { p.replan.grip_weight = 0.0; });
-  without("grip when grasps are chosen",
-          [](Parameters& p) { p.replan.grip_copies = 0; });
-  without("niches", [](Parameters& p) { p.swarm.niches = false; });
-  return ablations;
-}
-
 }  // namespace graspdb
