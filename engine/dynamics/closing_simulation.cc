@@ -14,9 +14,10 @@ constexpr double kDampingSeconds = 0.002;  // Damping over stiffness.
 // A slide is as stiff at the tip as a finger of a decimetre, and as fast.
 constexpr double kSlideLength = 0.1;  // m per rad.
 constexpr double kLeastLever = 0.01;  // Of a link without a shape, m.
-// Probes of the links this near to the surface may touch within a step, m …
-constexpr double kNear = 0.0004;
-// … and those this near are looked at until something has moved so far, m.
+// Probes of the links that may touch the surface within a step are those as
+// near as a finger moves in it, and a little farther; those within this of them
+// are looked at until something has moved so far, m.
+constexpr double kMargin = 1.2;
 constexpr double kWatched = 0.006;
 // Below this speed, m/s, what rubs is taken to stick.
 constexpr double kStickingSpeed = 1e-4;
@@ -40,7 +41,8 @@ Eigen::Matrix3d MakeCross(const Eigen::Vector3d& v) {
 }  // namespace
 
 ClosingSimulation::ClosingSimulation(const HandShape& hand, const Solid& solid,
-                                     const HoldParameters& parameters)
+                                     const HoldParameters& parameters,
+                                     const MotorParameters& motors)
     : hand_(hand),
       solid_(solid),
       parameters_(parameters),
@@ -59,19 +61,20 @@ ClosingSimulation::ClosingSimulation(const HandShape& hand, const Solid& solid,
           joint.breakaway_ratio > 0.0
               ? joint.breakaway_ratio * parameters.closing_speed * length
               : one.speed;
-      double lever = slides ? 1.0 : kLeastLever;
+      const double lever = std::max(hand.lever(j), kLeastLever);
       for (int link = 0; link < hand.model().num_links(); ++link) {
-        const double bound = hand.motion_bound(link, j);
-        if (bound == 0.0) continue;
-        movers_[static_cast<size_t>(link)].push_back(
-            static_cast<int>(joints_.size()));
-        if (!slides) lever = std::max(lever, bound);
+        if (hand.motion_bound(link, j) > 0.0) {
+          movers_[static_cast<size_t>(link)].push_back(
+              static_cast<int>(joints_.size()));
+        }
       }
       one.stiffness = parameters.stiffness / (length * length);
       one.damping = kDampingSeconds * one.stiffness;
       one.armature = kArmature / (length * length);
-      one.closing_torque = parameters.closing_force * lever;
-      one.holding_torque = parameters.holding_force * lever;
+      one.closing_torque = motors.closing_force * lever;
+      one.holding_torque = motors.holding_force * lever;
+      near_ =
+          std::max(near_, kMargin * parameters.time_step * one.speed * lever);
       joints_.push_back(one);
     }
   }
@@ -229,6 +232,7 @@ class ClosingRun {
     X_WL_ = CalcLinkPoses(hand_.model(), state_.q);
     const RigidTransform X_OW = CalcObjectPose().Inverse();
     const DistanceField& field = solid_.field();
+    const double near = simulation_.near_;
     touches_.clear();
     for (int link = 0; link < hand_.model().num_links(); ++link) {
       const auto l = static_cast<size_t>(link);
@@ -237,11 +241,11 @@ class ClosingRun {
       const RigidTransform X_OL = X_OW * X_WL_[l];
       Watch& watch = watches_[l];
       if (watch.travel >= watch.until) {
-        watch.until = watch.travel + kWatched - kNear;
+        watch.until = watch.travel + kWatched;
         watch.probes.clear();
         hand_.link(link)->tree.VisitNear(
             [&](const Eigen::Vector3d& p_L) { return field.Calc(X_OL * p_L); },
-            kWatched,
+            kWatched + near,
             [&](const Eigen::Vector3d& p_L) {
               watch.probes.push_back({p_L, watch.travel});
             });
@@ -250,8 +254,8 @@ class ClosingRun {
         if (watch.travel < probe.wake) continue;
         const Eigen::Vector3d p_O = X_OL * probe.p_L;
         const double distance = field.Calc(p_O);
-        if (distance > kNear) {
-          probe.wake = watch.travel + distance - kNear;
+        if (distance > near) {
+          probe.wake = watch.travel + distance - near;
           continue;
         }
         const Eigen::Vector3d gradient = field.CalcGradient(p_O);
@@ -387,8 +391,8 @@ class ClosingRun {
     const Eigen::Vector3d step = dt * state_.velocity.head<3>();
     state_.p_WC += step;
     // As far as the object reaches: what is watched is that near to it.
-    const double moved =
-        step.norm() + angle * (solid_.mass().max_radius + kWatched);
+    const double moved = step.norm() + angle * (solid_.mass().max_radius +
+                                                kWatched + simulation_.near_);
     for (Watch& watch : watches_) watch.travel += moved;
   }
 

@@ -28,9 +28,10 @@ struct ClosingOutcome {
  [Anitescu and Potra 2002 for the implicit, linearised steps] */
 class ClosingSimulation {
  public:
-  /** Keeps references to both. */
+  /** Keeps references to hand and solid. */
   ClosingSimulation(const HandShape& hand, const Solid& solid,
-                    const HoldParameters& parameters);
+                    const HoldParameters& parameters,
+                    const MotorParameters& motors);
 
   /** @param X_OH  Where the hand stands. @param q_open  All joints before
    closing, free of collision. @param friction  Coulomb's. */
@@ -58,6 +59,7 @@ class ClosingSimulation {
   const HoldParameters parameters_;
   std::vector<ClosingJoint> joints_;
   std::vector<std::vector<int>> movers_;  // Per link: indices into joints_.
+  double near_{0.0};  // What is as near as that may touch within a step, m.
 };
 
 }  // namespace graspdb

@@ -28,6 +28,7 @@ HandShape::HandShape(std::shared_ptr<const HandModel> model)
   const HandModel& hand = *model_;
   links_.resize(hand.num_links());
   reach_.assign(hand.num_links(), 0.0);
+  lever_.assign(hand.num_joints(), 0.0);
   motion_bound_.assign(hand.num_links(),
                        std::vector<double>(hand.num_joints(), 0.0));
   for (int i = 0; i < hand.num_links(); ++i) {
@@ -47,6 +48,7 @@ HandShape::HandShape(std::shared_ptr<const HandModel> model)
       } else {
         motion_bound_[i][j] = radius;
       }
+      lever_[j] = std::max(lever_[j], motion_bound_[i][j]);
       radius += joint.X_PJ.translation.norm();
     }
     reach_[i] = radius;

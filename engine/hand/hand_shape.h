@@ -41,6 +41,9 @@ class HandShape {
     return motion_bound_[link][joint];
   }
 
+  /** The most that joint `joint` moves a point of any link, m/rad or 1. */
+  double lever(int joint) const { return lever_[joint]; }
+
   /** How far, at most, a point of the link lies from the hand's origin, m. */
   double reach(int link) const { return reach_[link]; }
 
@@ -49,6 +52,7 @@ class HandShape {
   std::vector<std::optional<LinkShape>> links_;
   std::vector<std::vector<std::vector<int>>> chain_links_;
   std::vector<std::vector<double>> motion_bound_;
+  std::vector<double> lever_;
   std::vector<double> reach_;
 };
 

@@ -61,12 +61,25 @@ struct HybridParameters {
   bool operator==(const HybridParameters&) const = default;
 };
 
-/** What fingers and their motors bear, see CalcGripResidual(). */
+/** What a finger exerts and bears, as a force at its farthest point. */
+struct MotorParameters {
+  double closing_force{5.0};
+  double holding_force{15.0};
+
+  template <class Self, class F>
+  static void Visit(Self& self, F&& f) {
+    f("closing_force", self.closing_force,
+      ParameterInfo{"N", 0, 1e3, "ours: as hard as fingers close"});
+    f("holding_force", self.holding_force,
+      ParameterInfo{"N", 0, 1e3, "BH8-280: 15 N at the fingertip"});
+  }
+  bool operator==(const MotorParameters&) const = default;
+};
+
+/** What a grip is, see CalcGripResidual(). */
 struct GripParameters {
   double push{1.0};
   double least_force{2.0};
-  double closing_force{5.0};
-  double holding_force{15.0};
   double friction_share{0.8};
   double max_residual{0.1};
 
@@ -76,10 +89,6 @@ struct GripParameters {
       ParameterInfo{"N", 0, 1e3, "ours: what a grip is to withstand"});
     f("least_force", self.least_force,
       ParameterInfo{"N", 0, 1e3, "ours: what is left of it at the least"});
-    f("closing_force", self.closing_force,
-      ParameterInfo{"N", 0, 1e3, "ours: as hard as fingers close"});
-    f("holding_force", self.holding_force,
-      ParameterInfo{"N", 0, 1e3, "BH8-280: 15 N at the fingertip"});
     f("friction_share", self.friction_share,
       ParameterInfo{"1", 0.01, 1, "ours: of the friction that is counted on"});
     f("max_residual", self.max_residual,
@@ -92,8 +101,6 @@ struct GripParameters {
 struct HoldParameters {
   double mass{0.1};
   double closing_speed{1.0};
-  double closing_force{5.0};
-  double holding_force{15.0};
   double stiffness{100.0};
   double contact_stiffness{5e4};
   double push{0.0};
@@ -107,17 +114,13 @@ struct HoldParameters {
   static void Visit(Self& self, F&& f) {
     f("mass", self.mass, ParameterInfo{"kg", 1e-3, 100, "ours: of the object"});
     f("closing_speed", self.closing_speed,
-      ParameterInfo{"rad/s", 1e-3, 100, "ours: of a motor"});
-    f("closing_force", self.closing_force,
-      ParameterInfo{"N", 0, 1e3, "ours: as hard as fingers close"});
-    f("holding_force", self.holding_force,
-      ParameterInfo{"N", 0, 1e3, "BH8-280: 15 N at the fingertip"});
+      ParameterInfo{"rad/s", 1e-3, 10, "ours: of a motor"});
     f("stiffness", self.stiffness,
       ParameterInfo{"N m/rad", 1, 1e6, "ours: of a joint until it yields"});
     f("contact_stiffness", self.contact_stiffness,
       ParameterInfo{"N/m", 1, 1e9, "ours: of a point of the skin"});
     f("push", self.push,
-      ParameterInfo{"N", 0, 1e3, "ours: what a grip is to withstand"});
+      ParameterInfo{"N", 0, 1e3, "ours: once at rest, along each axis"});
     f("push_seconds", self.push_seconds,
       ParameterInfo{"s", 1e-3, 100, "ours: long enough to get going"});
     f("settle_seconds", self.settle_seconds,
@@ -127,7 +130,7 @@ struct HoldParameters {
     f("max_turn", self.max_turn,
       ParameterInfo{"rad", 1e-3, 3.2, "ours: beyond it the object is lost"});
     f("time_step", self.time_step,
-      ParameterInfo{"s", 1e-4, 0.02, "ours: as long as it stays true"});
+      ParameterInfo{"s", 1e-4, 0.01, "ours: as long as it stays true"});
   }
   bool operator==(const HoldParameters&) const = default;
 };
@@ -150,10 +153,12 @@ struct DistinctParameters {
   bool operator==(const DistinctParameters&) const = default;
 };
 
-/** Pre-grasp: how far the fingers open and the hand retreats. */
+/** Pre-grasp: how far the fingers open and the hand retreats, and whether all
+ fingers meet the object together, see TimeFingers(). */
 struct PregraspParameters {
   double retreat{0.10};
   double opening{0.35};
+  bool timed{true};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -161,6 +166,8 @@ struct PregraspParameters {
       ParameterInfo{"m", 0, 1, "ours: free travel along the approach"});
     f("opening", self.opening,
       ParameterInfo{"1", 0.001, 10, "ours: rad or a share of a slide's range"});
+    f("timed", self.timed,
+      ParameterInfo{"1", 0, 1, "ours: fingers that meet the object together"});
   }
   bool operator==(const PregraspParameters&) const = default;
 };

@@ -21,6 +21,7 @@ Parameters MakePaperParameters() {
   p.swarm.grip_weight = 0.0;
   p.swarm.near_share = 0.0;
   p.swarm.patience = p.swarm.iterations;
+  p.pregrasp.timed = false;
   p.mapping.affine = false;
   p.mapping.warp_steps = 0;
   p.replan.cycles = 1;

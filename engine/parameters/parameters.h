@@ -14,6 +14,7 @@ struct Parameters {
   SegmentationParameters segmentation;
   ContactParameters contact;
   HybridParameters hybrid;
+  MotorParameters motors;
   GripParameters grip;
   HoldParameters hold;
   ActiveLearningParameters active_learning;
@@ -29,6 +30,7 @@ struct Parameters {
     f("segmentation", self.segmentation);
     f("contact", self.contact);
     f("hybrid", self.hybrid);
+    f("motors", self.motors);
     f("grip", self.grip);
     f("hold", self.hold);
     f("active_learning", self.active_learning);

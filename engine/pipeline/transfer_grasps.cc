@@ -49,11 +49,7 @@ class Transferrer {
         parameters_(request.parameters),
         context_(context),
         hand_(request.hand),
-        parts_N_(request.novel),
-        on_part_(request.parameters) {
-    // What is to hold in the end is the whole.
-    if (request.assemble) on_part_.replan.climb_samples = 0;
-  }
+        parts_N_(request.novel) {}
 
   Result<TransferResult> Run() {
     // The forty are fixed before the novel object is looked at.
@@ -205,8 +201,12 @@ class Transferrer {
 
     // Sec. V-B: a stable grasp of the part …
     const double start = ThreadSeconds();
-    ReplanResult on_part = Replan(hand_, task, *pair.solid_N, on_part_,
-                                  DeriveSeed(request_.seed, {kReplan, p, s}));
+    // What is to hold in the end is the whole.
+    const ReplanDepth depth =
+        request_.assemble ? ReplanDepth::kFound : ReplanDepth::kClimbed;
+    ReplanResult on_part =
+        Replan(hand_, task, *pair.solid_N, parameters_,
+               DeriveSeed(request_.seed, {kReplan, p, s}), depth);
     const double replanned = ThreadSeconds();
     record.transfer_seconds = replanned - start;
     record.transfer = on_part.outcome;
@@ -292,7 +292,6 @@ class Transferrer {
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
   const PartSurfaces parts_N_;
-  Parameters on_part_;
 };
 
 }  // namespace

@@ -116,6 +116,7 @@ bool IsReachable(const HandShape& hand, const Grasp& grasp,
 
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
                   const Parameters& parameters) {
+  if (!parameters.pregrasp.timed) return grasp;
   const HandModel& model = hand.model();
   // Where each motor's first joint is blocked, and how far all can be from it.
   Eigen::VectorXd blocked = model.CalcActuators(grasp.q_pregrasp);
@@ -161,13 +162,14 @@ double CalcGrip(const HandShape& hand, const Grasp& grasp,
   return CalcGripResidual(hand, grasp.configuration.X_OH,
                           CalcLinkPoses(hand.model(), grasp.configuration.q),
                           grasp.contacts, mass, parameters.contact,
-                          parameters.grip, enough);
+                          parameters.grip, parameters.motors, enough);
 }
 
 Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
                           const Solid& solid, const Parameters& parameters,
                           uint64_t seed, const RobustnessOptions& options) {
-  const ClosingSimulation simulation(hand, solid, parameters.hold);
+  const ClosingSimulation simulation(hand, solid, parameters.hold,
+                                     parameters.motors);
   const int copies = options.copies;
   const double least = options.least_gripped;
   Random random(seed);

@@ -48,12 +48,7 @@ std::vector<LoadedJoint> FindLoadedJoints(
           one.locks ||
           model.joints()[static_cast<size_t>(*outer)].breakaway_ratio > 0.0;
     }
-    if (!one.slides) {
-      one.lever = 0.0;
-      for (int link = 0; link < model.num_links(); ++link) {
-        one.lever = std::max(one.lever, hand.motion_bound(link, j));
-      }
-    }
+    one.lever = hand.lever(j);
     loaded.push_back(one);
   }
   return loaded;
@@ -66,7 +61,8 @@ double CalcGripResidual(const HandShape& hand, const RigidTransform& X_OH,
                         const std::vector<Contact>& contacts,
                         const MassProperties& mass,
                         const ContactParameters& contact_parameters,
-                        const GripParameters& parameters, double enough) {
+                        const GripParameters& parameters,
+                        const MotorParameters& motors, double enough) {
   if (contacts.size() < 2) return std::max(parameters.push, 1.0);
   ContactParameters cones = contact_parameters;
   cones.friction *= parameters.friction_share;
@@ -103,17 +99,16 @@ double CalcGripResidual(const HandShape& hand, const RigidTransform& X_OH,
   const auto calc_residual = [&](double most) {
     for (Eigen::Index r = 0; r < m; ++r) {
       b[6 + m + r] =
-          (joints[static_cast<size_t>(r)].locks ? parameters.holding_force
-                                                : most) -
+          (joints[static_cast<size_t>(r)].locks ? motors.holding_force : most) -
           parameters.least_force;
     }
     return (A * problem.Solve(b) - b).norm();
   };
-  double worst = calc_residual(parameters.closing_force);
+  double worst = calc_residual(motors.closing_force);
   for (int i = 0; i < 6 && worst <= enough; ++i) {
     b.head<3>().setZero();
     b[i / 2] = (i % 2 == 0 ? -1.0 : 1.0) * parameters.push;
-    worst = std::max(worst, calc_residual(parameters.holding_force));
+    worst = std::max(worst, calc_residual(motors.holding_force));
   }
   return worst < kNoGripResidual ? 0.0 : worst;
 }

@@ -15,8 +15,8 @@ namespace graspdb {
  forces within the friction cones (friction times grip.friction_share) that keep
  the object at rest, while every closing joint that a contact loads bears what a
  motor lets it bear, as a force at its farthest point: grip.least_force to
- grip.closing_force when the fingers have just closed, or up to
- grip.holding_force, which its worm gear stands, when it has locked while its
+ motors.closing_force when the fingers have just closed, or up to
+ motors.holding_force, which its worm gear stands, when it has locked while its
  motor goes on to turn an outer joint, and against a push of grip.push at the
  mass centre. Joints that do not close and the base bear anything.
  @param enough  Once the residual is known to exceed this, any value above it.
@@ -30,7 +30,7 @@ double CalcGripResidual(const HandShape& hand, const RigidTransform& X_OH,
                         const MassProperties& mass,
                         const ContactParameters& contact_parameters,
                         const GripParameters& parameters,
-                        double enough = 1e300);
+                        const MotorParameters& motors, double enough = 1e300);
 
 /** What rounding leaves of a residual of 0, N. */
 inline constexpr double kNoGripResidual = 1e-3;

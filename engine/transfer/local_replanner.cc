@@ -79,13 +79,14 @@ bool PalmCollides(const HandShape& hand, const RigidTransform& X_NH,
 class Replanner {
  public:
   Replanner(const HandShape& hand, const TransferTask& task, const Solid& solid,
-            const Parameters& parameters, uint64_t seed)
+            const Parameters& parameters, uint64_t seed, ReplanDepth depth)
       : hand_(hand),
         task_(task),
         solid_(solid),
         parameters_(parameters),
         replan_(parameters.replan),
         seed_(seed),
+        depth_(depth),
         random_(seed) {}
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
@@ -95,7 +96,7 @@ class Replanner {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles);
     if (!best_) return {furthest_, std::nullopt};
-    if (replan_.grip_copies > 0) Climb();
+    if (depth_ == ReplanDepth::kClimbed && replan_.grip_copies > 0) Climb();
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
 
@@ -343,6 +344,7 @@ class Replanner {
   const Parameters& parameters_;
   const ReplanParameters& replan_;
   const uint64_t seed_;
+  const ReplanDepth depth_;
   Random random_;
   std::optional<Grasp> best_;
   Merit merit_;         // Of the best …
@@ -416,13 +418,13 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
 
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
-                    uint64_t seed) {
+                    uint64_t seed, ReplanDepth depth) {
   std::vector<RigidTransform> starts{task.X_NH};
   if (parameters.replan.aimed_starts) {
     starts.push_back(
         Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
   }
-  return Replanner(hand, task, solid, parameters, seed).Run(starts);
+  return Replanner(hand, task, solid, parameters, seed, depth).Run(starts);
 }
 
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
@@ -438,7 +440,9 @@ ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
   } else if (PalmCollides(hand, starts[0], transferred.q_pregrasp, whole)) {
     return {TransferOutcome::kPalmCollision, std::nullopt};
   }
-  return Replanner(hand, on_whole, whole, parameters, seed).Run(starts);
+  return Replanner(hand, on_whole, whole, parameters, seed,
+                   ReplanDepth::kClimbed)
+      .Run(starts);
 }
 
 double CalcOpenCloseEpsilon(const HandShape& hand, const TransferTask& task,

@@ -44,16 +44,22 @@ bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
  near T* X_EH. */
 RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 
+/** How far replanning goes. */
+enum class ReplanDepth {
+  kFound,    ///< To a grasp that counts.
+  kClimbed,  ///< To the best one around it.
+};
+
 /** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
  aimed_starts, from FitWrist(). Each sample that collides is replaced by up to
  extra_samples others; each free one closes its fingers, its pre-grasp timed by
  TimeFingers(). Of the stable, reachable, near-enough grasps the answer is the
  one with the largest ε, or, with grip_copies, the one that the most perturbed
- copies hold, up to enough_grip, then ε; climb_samples more are then tried
- around the best. Deterministic for a seed. @paper{Sec. V-B} */
+ copies hold, up to enough_grip, then ε; when that is wanted, climb_samples more
+ are then tried around the best. Deterministic for a seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
-                    uint64_t seed);
+                    uint64_t seed, ReplanDepth depth = ReplanDepth::kClimbed);
 
 /** Assembly: the grasp of the part on the whole object, replanned there from
  where it is and, with aimed_starts, from T* X_EH and FitWrist(). Without them,

@@ -24,6 +24,8 @@ std::vector<BenchVariant> MakeAblations() {
           [](Parameters& p) { p.swarm.hold_on_whole = false; });
   without("examples that the motors hold",
           [](Parameters& p) { p.swarm.min_grip = 0.0; });
+  without("fingers that meet the object together",
+          [](Parameters& p) { p.pregrasp.timed = false; });
   without("climbing to a surer grip",
           [](Parameters& p) { p.replan.climb_samples = 0; });
   without("the motors' balance in Eq. (6)",

@@ -8,6 +8,7 @@
 
 #include "server/bench/published_results.h"
 #include "server/bench/svg_plot.h"
+#include "server/codec/markup.h"
 
 namespace graspdb {
 namespace {
@@ -88,7 +89,7 @@ std::string Hits(const Json& proportion) {
 
 std::string NameOf(const Json& row) {
   const int number = row["number"].get<int>();
-  return EscapeHtml(fmt::format(
+  return EscapeMarkup(fmt::format(
       "{}{} {} {}", number > 0 ? fmt::format("#{} ", number) : std::string(),
       row["category"].get<std::string>(), row["object"].get<std::string>(),
       row["part"].get<std::string>()));
@@ -115,8 +116,8 @@ std::string MakeSummary(const Json& variant) {
   for (const auto& [group, pool] : variant["pooled"].items()) {
     const Json& physical = pool["physical"];
     rows.push_back(
-        {EscapeHtml(group), pool["rows"].dump(), Interval(pool["transferred"]),
-         Interval(pool["assembled"]),
+        {EscapeMarkup(group), pool["rows"].dump(),
+         Interval(pool["transferred"]), Interval(pool["assembled"]),
          fmt::format("{} / {}", pool["least_row"]["transferred"].dump(),
                      pool["least_row"]["assembled"].dump()),
          Interval(pool["open_close"]["transferred"]),
@@ -158,8 +159,8 @@ std::string MakeLearningTable(const Json& variant) {
     const PublishedLearning none{};
     const PublishedLearning& p = published != nullptr ? *published : none;
     rows.push_back(
-        {EscapeHtml(row["category"].get<std::string>() + " " +
-                    row["part"].get<std::string>()),
+        {EscapeMarkup(row["category"].get<std::string>() + " " +
+                      row["part"].get<std::string>()),
          row["triangles"].dump(), theirs(std::to_string(p.triangles)),
          fmt::format("{:.1f}",
                      row["configuration_space_seconds"].get<double>()),
@@ -222,8 +223,8 @@ std::string MakeTransferTable(const Json& variant, const std::string& group) {
          Hits(physical["six_pushes"]), Hits(physical["six_pushes_top_ten"]),
          Hits(physical.value("net_displacement", Json())),
          Hits(physical.value("lift", Json())),
-         EscapeHtml(row.contains("error") ? row["error"].get<std::string>()
-                                          : failures)});
+         EscapeMarkup(row.contains("error") ? row["error"].get<std::string>()
+                                            : failures)});
   }
   if (rows.empty()) return "";
   return MakeTable(
@@ -356,8 +357,8 @@ std::string MakeFailureTable(const Json& variants) {
   for (const Json& variant : variants) {
     for (const auto& [group, pool] : variant["pooled"].items()) {
       for (const auto& [reason, count] : pool["failures"].items()) {
-        rows.push_back({EscapeHtml(variant["name"].get<std::string>()), group,
-                        EscapeHtml(reason), count.dump()});
+        rows.push_back({EscapeMarkup(variant["name"].get<std::string>()), group,
+                        EscapeMarkup(reason), count.dump()});
       }
     }
   }
@@ -373,8 +374,9 @@ std::string MakeAblationTable(const Json& report) {
     for (const Json& row : variant["learning"])
       grasps += row["grasps"].get<int>();
     rows.push_back(
-        {EscapeHtml(variant["name"].get<std::string>()), std::to_string(grasps),
-         Interval(pool["transferred"]), Interval(pool["assembled"]),
+        {EscapeMarkup(variant["name"].get<std::string>()),
+         std::to_string(grasps), Interval(pool["transferred"]),
+         Interval(pool["assembled"]),
          Interval(pool["over_open_close"]["assembled"]),
          fmt::format("{:.2f} / {:.2f}", pool["robust"]["median"].get<double>(),
                      pool["robust"]["tenth_percentile"].get<double>()),
@@ -398,20 +400,20 @@ std::string MakeHtmlReport(const Json& report) {
       "Friction 0.5, stable from eps 0.001. Behind a share stands its 95 % "
       "interval [Wilson]; grey is what the paper printed, with its own objects "
       "and segmentation.</p>\n",
-      EscapeHtml(report["engine_version"].get<std::string>()),
-      EscapeHtml(report["simulator"].get<std::string>()), report["seed"].dump(),
-      report["sources_per_part"].dump(),
+      EscapeMarkup(report["engine_version"].get<std::string>()),
+      EscapeMarkup(report["simulator"].get<std::string>()),
+      report["seed"].dump(), report["sources_per_part"].dump(),
       report["quick"].get<bool>() ? ", quick run" : "",
       report["machine"]["cores"].dump());
   html += "<p>Simulated, of all assembled grasps: ";
   for (const auto& [key, name] : report["tests"].items()) {
-    html += "<b>" + EscapeHtml(key) +
-            "</b>: " + EscapeHtml(name.get<std::string>()) + ". ";
+    html += "<b>" + EscapeMarkup(key) +
+            "</b>: " + EscapeMarkup(name.get<std::string>()) + ". ";
   }
   html += "</p>\n";
   for (const Json& variant : report["variants"]) {
     html +=
-        "<h2>Parameters: " + EscapeHtml(variant["name"].get<std::string>()) +
+        "<h2>Parameters: " + EscapeMarkup(variant["name"].get<std::string>()) +
         "</h2>\n";
     html += MakeSummary(variant);
     html += "<h3>Table I: learning</h3>\n" + MakeLearningTable(variant);
@@ -432,7 +434,7 @@ std::string MakeHtmlReport(const Json& report) {
     html += "<h2>What each lever is worth</h2>\n" + MakeAblationTable(report);
   }
   for (const Json& variant : report["variants"]) {
-    html += "<h2>Figures: " + EscapeHtml(variant["name"].get<std::string>()) +
+    html += "<h2>Figures: " + EscapeMarkup(variant["name"].get<std::string>()) +
             "</h2>\n<h3>Active learning</h3>\n" + MakeLearningFigures(variant) +
             MakeSeedingFigures(variant) + "<h3>Quality of each grasp</h3>\n" +
             MakeFigures(variant);

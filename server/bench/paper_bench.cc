@@ -8,9 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "server/bench/bench_items.h"
 #include "server/bench/bench_rows.h"
 #include "server/bench/html_report.h"
 #include "server/bench/published_results.h"
+#include "server/bench/row_files.h"
 #include "server/bench/scanned_cloud.h"
 #include "server/bench/seeding_comparison.h"
 #include "server/codec/input_json.h"
@@ -32,45 +34,19 @@ constexpr double kSeedingSeconds = 10.0;
 constexpr int kBodyPoints = 1000;
 constexpr int kOtherPoints = 500;
 
-// What the rows of one object are made of.
-struct Item {
-  std::string group;  // "paper", "further", "cloud", "objects".
-  int number{0};      // The paper's #1 or #2; 0: none.
-  std::string category;
-  std::string name;
-  ImportOrder mesh;
-};
-
-std::string Slug(const std::string& text) {
-  std::string slug;
-  for (const char c : text) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    slug += plain ? c : '-';
-  }
-  return slug;
-}
-
-Result<CategoryFile> ReadCategory(const fs::path& folder) {
-  GRASPDB_TRY(text, ReadFileBytes(folder / "category.json"));
-  return CategoryFileFromJson(text);
-}
-
 // Without what differs between variants.
 class PaperBench {
  public:
   PaperBench(const PaperBenchOrder& order, const OpenService& open,
              ExecutionContext& context)
-      : order_(order), open_(open), context_(context) {}
+      : order_(order),
+        open_(open),
+        context_(context),
+        row_files_(fs::path(order.out) / "rows") {}
 
   Result<Json> Run() {
-    std::error_code code;
-    fs::create_directories(fs::path(order_.out) / "rows", code);
-    if (code) {
-      return Error{ErrorCode::kInvalidArgument,
-                   order_.out + " cannot be made: " + code.message() + ".",
-                   "name a folder that can be written to"};
-    }
-    GRASPDB_TRY(items, CollectItems());
+    GRASPDB_TRY_VOID(row_files_.MakeFolder());
+    GRASPDB_TRY(items, CollectBenchItems(order_));
     Json report = DescribeRun();
     const size_t all = order_.variants.size() + order_.ablations.size();
     size_t done = 0;
@@ -130,78 +106,8 @@ class PaperBench {
     return report;
   }
 
-  // Everything that is transferred to, before anything is computed.
-  Result<std::vector<Item>> CollectItems() const {
-    std::vector<Item> items;
-    for (const std::string& category : order_.categories) {
-      const fs::path folder = fs::path(order_.data) / category;
-      GRASPDB_TRY(file, ReadCategory(folder));
-      for (size_t i = 0; i < file.novel.size(); ++i) {
-        if (order_.quick && i > 0) break;
-        Item item;
-        item.group = i < 2 ? "paper" : "further";
-        item.number = i < 2 ? static_cast<int>(i) + 1 : 0;
-        item.category = category;
-        item.name = file.novel[i].name;
-        GRASPDB_TRY(bytes, ReadFileBytes(folder / file.novel[i].mesh));
-        item.mesh.bytes = std::move(bytes);
-        item.mesh.file_name = fs::path(file.novel[i].mesh).filename();
-        items.push_back(item);
-      }
-    }
-    const auto first_mug =
-        std::find_if(items.begin(), items.end(),
-                     [](const Item& item) { return item.category == "mug"; });
-    if (first_mug != items.end() && !order_.quick) {
-      const Item mug = *first_mug;
-      items.push_back(MakeCloudItem(mug, "all around"));
-      items.push_back(MakeCloudItem(mug, "one side"));
-    }
-    GRASPDB_TRY_VOID(CollectObjects(items));
-    return items;
-  }
-
-  // The bytes are made when the mug has been segmented.
-  static Item MakeCloudItem(const Item& mug, const std::string& view) {
-    Item item;
-    item.group = "cloud";
-    item.category = mug.category;
-    item.name = mug.name + ", " + view;
-    item.mesh.file_name = "cloud.xyz";
-    return item;
-  }
-
-  Result<void> CollectObjects(std::vector<Item>& items) const {
-    if (order_.objects.empty()) return {};
-    for (const std::string& category : order_.categories) {
-      const fs::path folder = fs::path(order_.objects) / category;
-      std::vector<fs::path> files;
-      std::error_code code;
-      for (const auto& entry : fs::directory_iterator(folder, code)) {
-        const std::string extension = entry.path().extension();
-        for (const char* known :
-             {".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".dae"}) {
-          if (extension == known) files.push_back(entry.path());
-        }
-      }
-      std::sort(files.begin(), files.end());
-      for (const fs::path& file : files) {
-        Item item;
-        item.group = "objects";
-        item.category = category;
-        item.name = file.stem();
-        GRASPDB_TRY(bytes, ReadFileBytes(file));
-        item.mesh.bytes = std::move(bytes);
-        item.mesh.file_name = file.filename();
-        item.mesh.units = order_.units;
-        items.push_back(std::move(item));
-      }
-    }
-    return {};
-  }
-
   Result<Json> RunVariant(const BenchVariant& variant,
-                          const std::vector<Item>& items, bool physical,
+                          const std::vector<BenchItem>& items, bool physical,
                           ExecutionContext& context) {
     // A transfer takes the grasp space that was learned last: a file for each
     // way to learn, so that no variant takes another's.
@@ -261,49 +167,20 @@ class PaperBench {
           "{} {} {} {} seeding {}", EngineVersion(), space.parameters_hash,
           order_.seed, seeding_seconds(), space.part_label));
       const std::string part = space.category + " " + space.part_label;
-      const fs::path file = MakeRowPath(variant.name + " seeding " + part);
-      std::optional<Json> rows = ReadRows(file, key);
+      const std::string name = variant.name + " seeding " + part;
+      std::optional<Json> rows = row_files_.Read(name, key);
       if (!rows) {
         SubContext comparing(context, "seeding " + part, kLearnShare,
                              kLearnShare);
         GRASPDB_TRY(compared, CompareSeeding(service, space, variant.parameters,
                                              seeding_seconds(), order_.seed,
                                              comparing.context()));
-        GRASPDB_TRY_VOID(WriteRows(file, key, compared));
+        GRASPDB_TRY_VOID(row_files_.Write(name, key, compared));
         rows = std::move(compared);
       }
       for (Json& row : *rows) all.push_back(std::move(row));
     }
     return all;
-  }
-
-  fs::path MakeRowPath(const std::string& name) const {
-    return fs::path(order_.out) / "rows" / (Slug(name) + ".json");
-  }
-
-  // What was written for the same question, if anything.
-  static std::optional<Json> ReadRows(const fs::path& file,
-                                      const std::string& key) {
-    if (!fs::exists(file)) return std::nullopt;
-    const auto text = ReadFileBytes(file);
-    if (!text) return std::nullopt;
-    const Json known = Json::parse(*text, nullptr, false);
-    if (!known.is_object() || known.value("key", "") != key) {
-      return std::nullopt;
-    }
-    return known["rows"];
-  }
-
-  // Whole or not at all, whenever the power goes.
-  static Result<void> WriteRows(const fs::path& file, const std::string& key,
-                                const Json& rows) {
-    Json written;
-    written["key"] = key;
-    written["rows"] = rows;
-    const fs::path draft = file.string() + ".new";
-    GRASPDB_TRY_VOID(WriteFileBytes(draft, written.dump(1)));
-    fs::rename(draft, file);
-    return {};
   }
 
   static Result<Json> DescribeLearning(Service& service,
@@ -322,15 +199,15 @@ class PaperBench {
   // question, else made and written.
   Result<std::vector<Json>> RunItem(Service& service,
                                     const BenchVariant& variant,
-                                    const Item& item, bool physical,
+                                    const BenchItem& item, bool physical,
                                     ExecutionContext& context) {
     const std::string key = MakeContentId(fmt::format(
         "{} {} {} {} {} {} {} {}", EngineVersion(), variant.name,
         ParametersToJson(variant.parameters), order_.seed, sources(), physical,
         item.name, MakeContentId(item.mesh.bytes)));
-    const fs::path file = MakeRowPath(variant.name + " " + item.group + " " +
-                                      item.category + " " + item.name);
-    if (const auto known = ReadRows(file, key)) {
+    const std::string name =
+        variant.name + " " + item.group + " " + item.category + " " + item.name;
+    if (const auto known = row_files_.Read(name, key)) {
       return known->get<std::vector<Json>>();
     }
     GRASPDB_TRY(rows, MakeRows(service, variant, item, physical, context));
@@ -340,13 +217,13 @@ class PaperBench {
       row["category"] = item.category;
       row["object"] = item.name;
     }
-    GRASPDB_TRY_VOID(WriteRows(file, key, rows));
+    GRASPDB_TRY_VOID(row_files_.Write(name, key, rows));
     return rows;
   }
 
   Result<std::vector<Json>> MakeRows(Service& service,
                                      const BenchVariant& variant,
-                                     const Item& item, bool physical,
+                                     const BenchItem& item, bool physical,
                                      ExecutionContext& context) {
     TransferOrder transfer;
     transfer.mesh = item.mesh;
@@ -398,7 +275,7 @@ class PaperBench {
 
   // Points of the mesh whose cloud it is.
   Result<std::vector<Eigen::Vector3d>> ScanMug(Service& service,
-                                               const Item& item) const {
+                                               const BenchItem& item) const {
     GRASPDB_TRY(objects, service.store().ListObjects(
                              {item.category, ObjectRole::kNovel}, {1000, ""}));
     const std::string name = item.name.substr(0, item.name.find(", "));
@@ -475,6 +352,7 @@ class PaperBench {
   const PaperBenchOrder& order_;
   const OpenService& open_;
   ExecutionContext& context_;
+  const RowFiles row_files_;
 };
 
 }  // namespace

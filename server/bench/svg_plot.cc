@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "server/codec/markup.h"
+
 namespace graspdb {
 namespace {
 
@@ -48,7 +50,7 @@ class Plot {
         "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
         "role=\"img\"><title>{2}</title>"
         "<text x=\"{3}\" y=\"13\" class=\"t\">{2}</text>",
-        kWidth, kHeight, EscapeHtml(options_.title), kLeft);
+        kWidth, kHeight, EscapeMarkup(options_.title), kLeft);
     svg += DrawAxes();
     if (options_.diagonal) {
       svg += fmt::format(
@@ -90,11 +92,11 @@ class Plot {
     }
     svg += fmt::format("<text x=\"{}\" y=\"{}\" class=\"x\">{}</text>",
                        0.5 * (kLeft + kWidth - kRight), kHeight - 6.0,
-                       EscapeHtml(options_.x_label));
+                       EscapeMarkup(options_.x_label));
     svg += fmt::format(
         "<text transform=\"translate(10 {}) rotate(-90)\" class=\"x\">{}"
         "</text>",
-        0.5 * (kTop + floor), EscapeHtml(options_.y_label));
+        0.5 * (kTop + floor), EscapeMarkup(options_.y_label));
     return svg;
   }
 
@@ -124,7 +126,7 @@ class Plot {
           "<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>"
           "<text x=\"{}\" y=\"{}\" class=\"l\">{}</text>",
           kWidth - 118.0, y - 3.0, one.color, kWidth - 111.0, y,
-          EscapeHtml(one.name));
+          EscapeMarkup(one.name));
       y += 11.0;
     }
     return svg;
@@ -137,29 +139,6 @@ class Plot {
 };
 
 }  // namespace
-
-std::string EscapeHtml(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string MakeSvgPlot(const std::vector<PlotSeries>& series,
                         const PlotOptions& options) {

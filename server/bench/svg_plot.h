@@ -29,7 +29,4 @@ struct PlotOptions {
 std::string MakeSvgPlot(const std::vector<PlotSeries>& series,
                         const PlotOptions& options);
 
-/** `text` where HTML and XML take plain text. */
-std::string EscapeHtml(const std::string& text);
-
 }  // namespace graspdb

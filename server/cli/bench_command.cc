@@ -10,7 +10,7 @@ namespace graspdb {
 void AddBench(Subcommands& commands) {
   CLI::App* command =
       commands.Add("bench", "Measure: the paper's tables and figures (paper).",
-                   "graspdb bench paper --out bench", false);
+                   "graspdb bench paper --out bench", Source::kOwn);
   commands.AddEngineOptions(command);
   struct Given {
     PaperBenchOrder order;
@@ -30,7 +30,8 @@ void AddBench(Subcommands& commands) {
       ->capture_default_str();
   command
       ->add_option("--preset", given->presets,
-                   "default, paper or a file of JSON; several side by side")
+                   "default, paper or a file of JSON; several, separated by "
+                   "commas, side by side")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--objects", order.objects,

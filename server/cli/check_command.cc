@@ -8,7 +8,7 @@ namespace graspdb {
 void AddCheck(Subcommands& commands) {
   CLI::App* command =
       commands.Add("check", "Read the whole database and tell of any damage.",
-                   "graspdb check --db graspdb.db", false);
+                   "graspdb check --db graspdb.db", Source::kFile);
   command->callback([&commands] {
     commands.action = [](Program& program) -> Result<int> {
       GRASPDB_TRY(store, Store::Open(program.options().db,

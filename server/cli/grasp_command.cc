@@ -6,9 +6,10 @@
 namespace graspdb {
 
 void AddGrasp(Subcommands& commands) {
-  CLI::App* command = commands.Add(
-      "grasp", "Find grasps for a mesh by transfer.",
-      "graspdb grasp mug.stl --category mug --units mm --count 10", true);
+  CLI::App* command =
+      commands.Add("grasp", "Find grasps for a mesh by transfer.",
+                   "graspdb grasp mug.stl --category mug --units mm --count 10",
+                   Source::kFileOrServer);
   commands.AddEngineOptions(command);
   const auto order = Share<TransferOrder>();
   struct Extra {

@@ -6,9 +6,9 @@
 namespace graspdb {
 
 void AddLearn(Subcommands& commands) {
-  CLI::App* command =
-      commands.Add("learn", "Learn the grasp spaces of a stored object.",
-                   "graspdb learn 0198f2c4-… --part handle", true);
+  CLI::App* command = commands.Add(
+      "learn", "Learn the grasp spaces of a stored object.",
+      "graspdb learn 0198f2c4-… --part handle", Source::kFileOrServer);
   commands.AddEngineOptions(command);
   const auto order = Share<LearnOrder>();
   const auto parameters = Share<std::string>();

@@ -10,7 +10,7 @@ namespace graspdb {
 void AddPopulate(Subcommands& commands) {
   CLI::App* command = commands.Add(
       "populate", "Bring a data folder into the database and learn from it.",
-      "graspdb populate data --db graspdb.db", false);
+      "graspdb populate data --db graspdb.db", Source::kFile);
   commands.AddEngineOptions(command);
   const auto order = Share<PopulateOrder>();
   const auto parameters = Share<std::string>();

@@ -5,9 +5,10 @@
 namespace graspdb {
 
 void AddQuery(Subcommands& commands) {
-  CLI::App* command = commands.Add(
-      "query", "List stored grasps.",
-      "graspdb query --category mug --part handle --limit 5", true);
+  CLI::App* command =
+      commands.Add("query", "List stored grasps.",
+                   "graspdb query --category mug --part handle --limit 5",
+                   Source::kFileOrServer);
   struct Given {
     GraspSearch search;
     std::string stage;

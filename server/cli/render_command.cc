@@ -9,7 +9,8 @@ namespace graspdb {
 void AddRender(Subcommands& commands) {
   CLI::App* command = commands.Add(
       "render", "Draw an object by parts, or grasps on it, as a PNG file.",
-      "graspdb render --transfer 5f2c… --count 12 -o grasps.png", true);
+      "graspdb render --transfer 5f2c… --count 12 -o grasps.png",
+      Source::kFileOrServer);
   const auto order = Share<RenderOrder>();
   const auto out = std::make_shared<std::string>("grasps.png");
   CLI::Option_group* what = command->add_option_group("what");

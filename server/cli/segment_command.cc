@@ -8,7 +8,8 @@ namespace graspdb {
 void AddSegment(Subcommands& commands) {
   CLI::App* command =
       commands.Add("segment", "Store a mesh and cut it into its parts.",
-                   "graspdb segment mug.stl --category mug --units mm", true);
+                   "graspdb segment mug.stl --category mug --units mm",
+                   Source::kFileOrServer);
   commands.AddEngineOptions(command);
   const auto order = Share<ImportOrder>();
   const auto path = Share<std::string>();

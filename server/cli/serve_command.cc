@@ -10,7 +10,7 @@ namespace graspdb {
 void AddServe(Subcommands& commands) {
   CLI::App* command =
       commands.Add("serve", "Serve the database over HTTP.",
-                   "graspdb serve --db graspdb.db --port 8080", false);
+                   "graspdb serve --db graspdb.db --port 8080", Source::kFile);
   commands.AddEngineOptions(command);
   const auto config = Share<ServerConfig>();
   const auto wait = std::make_shared<int>(60);

@@ -6,11 +6,13 @@ namespace graspdb {
 
 CLI::App* Subcommands::Add(const std::string& name,
                            const std::string& description,
-                           const std::string& example, bool client) {
+                           const std::string& example, Source source) {
   CLI::App* command = app.add_subcommand(name, description);
-  AddSetting(command, "--db", options.db, "database file")
-      ->capture_default_str();
-  if (client) {
+  if (source != Source::kOwn) {
+    AddSetting(command, "--db", options.db, "database file")
+        ->capture_default_str();
+  }
+  if (source == Source::kFileOrServer) {
     AddSetting(command, "--server", options.server,
                "URL of a server to ask instead of the file");
   }

@@ -14,15 +14,21 @@ namespace graspdb {
 /** A subcommand that was parsed, ready to run. @returns the exit status. */
 using Action = std::function<Result<int>(Program&)>;
 
+/** What a subcommand works on. */
+enum class Source {
+  kOwn,           ///< Files of its own.
+  kFile,          ///< A database file, --db.
+  kFileOrServer,  ///< That, or the server that --server names.
+};
+
 /** What the Add… functions below describe subcommands to. */
 struct Subcommands {
   CLI::App& app;
   Options& options;
   Action action;  ///< Of the subcommand that was parsed.
 
-  /** @param client  Whether --server may name a server to ask. */
   CLI::App* Add(const std::string& name, const std::string& description,
-                const std::string& example, bool client);
+                const std::string& example, Source source);
   void AddEngineOptions(CLI::App* command);
 };
 

@@ -8,7 +8,7 @@ namespace graspdb {
 void AddVerify(Subcommands& commands) {
   CLI::App* command = commands.Add(
       "verify", "Push on stored grasps in a simulator and keep the verdicts.",
-      "graspdb verify --category mug --stage assembly", false);
+      "graspdb verify --category mug --stage assembly", Source::kFile);
   commands.AddEngineOptions(command);
   const auto order = Share<VerifyOrder>();
   const auto stage = Share<std::string>();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/contract.h"
+#include "server/codec/markup.h"
 
 namespace graspdb {
 namespace {
@@ -15,26 +16,6 @@ constexpr double kMillimetresPerMetre = 1000.0;
 // A joint that is this far from where its motor alone would put it, rad, has
 // broken away.
 constexpr double kCoupled = 1e-6;
-
-std::string EscapeXml(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 // (w x y z)[x y z]
 std::string FormatTransform(const RigidTransform& X) {
@@ -72,7 +53,7 @@ std::string FormatRobot(const StoredGrasp& stored, const HandModel& hand,
       "    <dofValues>{}</dofValues>\n"
       "    <transform><fullTransform>{}</fullTransform></transform>\n"
       "  </robot>\n",
-      stored.id, EscapeXml(model.robot), freedoms,
+      stored.id, EscapeMarkup(model.robot), freedoms,
       FormatTransform(configuration.X_OH * model.X_HG));
 }
 

@@ -17,7 +17,7 @@ class Pinch : public testing::Test {
   ClosingOutcome Run(const HoldParameters& parameters,
                      double friction = kFriction,
                      const Eigen::Vector3d& shift_H = {0, 0, 0}) const {
-    return ClosingSimulation(gripper_, box_, parameters)
+    return ClosingSimulation(gripper_, box_, parameters, MotorParameters())
         .Run({Eigen::Matrix3d::Identity(),
               Eigen::Vector3d(0, 0, -0.07) + shift_H},
              Eigen::Vector2d::Zero(), friction);
@@ -50,7 +50,7 @@ TEST_F(Pinch, SlipsWhereCoulombSaysWithinThirtyPercent) {
   for (const double friction : {0.5, 0.2}) {
     HoldParameters parameters;
     parameters.push_seconds = 1.0;
-    const double limit = 2.0 * friction * parameters.closing_force;
+    const double limit = 2.0 * friction * MotorParameters().closing_force;
     parameters.push = 0.7 * limit;
     EXPECT_TRUE(Run(parameters, friction).held) << friction;
     parameters.push = 1.3 * limit;
@@ -97,7 +97,7 @@ class BarrettGrasp : public testing::Test {
     }
     HoldParameters parameters;
     parameters.push = 1.0;
-    return ClosingSimulation(hand_, cylinder, parameters)
+    return ClosingSimulation(hand_, cylinder, parameters, MotorParameters())
         .Run({R_OH, -(kPalm + kRadius + gap) * R_OH.col(2)},
              model.CalcCoupledJoints(motors), friction);
   }

@@ -74,13 +74,12 @@ TEST_F(GripperOnABox, AFirmGraspIsGrippedButNotByWeakMotors) {
   EXPECT_EQ(CalcGrip(hand_, result.grasp, box_.mass(), parameters_), 0.0);
   Parameters weak = parameters_;
   weak.grip.least_force = 0.1;
-  weak.grip.closing_force = weak.grip.holding_force = 0.2;
+  weak.motors.closing_force = weak.motors.holding_force = 0.2;
   EXPECT_GT(CalcGrip(hand_, result.grasp, box_.mass(), weak), 0.5);
   const Robustness firm =
       CalcRobustness(hand_, result.grasp, box_, parameters_, 1);
   EXPECT_GT(firm.gripped, 0.5);
   EXPECT_LE(firm.gripped, firm.stable);
-  weak.hold.closing_force = weak.hold.holding_force = 0.2;
   weak.hold.push = 1.0;
   EXPECT_EQ(CalcRobustness(hand_, result.grasp, box_, weak, 1).gripped, 0.0);
 }

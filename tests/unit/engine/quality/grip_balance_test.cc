@@ -18,7 +18,7 @@ class PinchedBox : public ::testing::Test {
     return CalcGripResidual(
         hand_, RigidTransform(),
         CalcLinkPoses(model, Eigen::VectorXd::Zero(model.num_joints())),
-        contacts_, mass_, cones_, grip_);
+        contacts_, mass_, cones_, grip_, motors_);
   }
 
   const HandShape hand_{workshop::MakeTwoJawGripper()};
@@ -37,6 +37,7 @@ class PinchedBox : public ::testing::Test {
   }();
   ContactParameters cones_;
   GripParameters grip_;
+  MotorParameters motors_;
 };
 
 TEST_F(PinchedBox, IsHeldByTheStandardForces) { EXPECT_EQ(Calc(), 0.0); }
@@ -45,14 +46,14 @@ TEST_F(PinchedBox, IsHeldByTheStandardForces) { EXPECT_EQ(Calc(), 0.0); }
 // jaws needs nothing of friction.
 TEST_F(PinchedBox, SlipsWhereCoulombSays) {
   grip_.least_force = 0.1;
-  grip_.closing_force = 0.2;
-  grip_.holding_force = 1.0 / 0.8 + 0.01;
+  motors_.closing_force = 0.2;
+  motors_.holding_force = 1.0 / 0.8 + 0.01;
   EXPECT_EQ(Calc(), 0.0);
-  grip_.holding_force = 1.0 / 0.8 - 0.05;
+  motors_.holding_force = 1.0 / 0.8 - 0.05;
   EXPECT_GT(Calc(), 0.0);
   // The jaws' friction is short of all but 0.8 · 0.2 N of the push; the least
   // squares share the rest between object and jaws.
-  grip_.holding_force = 0.2;
+  motors_.holding_force = 0.2;
   EXPECT_GT(Calc(), 0.5);
   EXPECT_LT(Calc(), 1.0 - 0.8 * 0.2 + 1e-9);
 }
@@ -71,7 +72,7 @@ TEST_F(PinchedBox, ABaseBearsWhateverItIsPressedWith) {
 }
 
 TEST_F(PinchedBox, TurnedWithTheHandTheSameIsLeft) {
-  grip_.holding_force = grip_.closing_force = grip_.least_force + 0.01;
+  motors_.holding_force = motors_.closing_force = grip_.least_force + 0.01;
   grip_.push = 3.0;
   // A quarter turn about x maps the six pushes onto themselves.
   const RigidTransform X(
@@ -91,7 +92,7 @@ TEST_F(PinchedBox, TurnedWithTheHandTheSameIsLeft) {
       CalcGripResidual(
           hand_, X,
           CalcLinkPoses(model, Eigen::VectorXd::Zero(model.num_joints())),
-          contacts_, mass, cones_, grip_),
+          contacts_, mass, cones_, grip_, motors_),
       before, 0.1 * before);
 }
 
