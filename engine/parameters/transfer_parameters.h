@@ -124,8 +124,9 @@ struct ReplanParameters {
   double trust_rotation{0.17453292519943295};
   double grip_weight{10.0};
   int grip_copies{16};
-  double enough_grip{0.9};
-  int climb_samples{200};
+  double enough_grip{0.95};
+  double behind_cost{0.1};
+  int climb_samples{600};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -178,6 +179,9 @@ struct ReplanParameters {
       ParameterInfo{
           "1", 0, 1,
           "ours: share of them that are held; beyond it eps chooses"});
+    f("behind_cost", self.behind_cost,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of them that it is worth to beat open-close"});
     f("climb_samples", self.climb_samples,
       ParameterInfo{"1", 0, 1e6,
                     "ours: tries around the best to get there, at most"});

@@ -202,11 +202,11 @@ class Transferrer {
     // Sec. V-B: a stable grasp of the part …
     const double start = ThreadSeconds();
     // What is to hold in the end is the whole.
-    const ReplanDepth depth =
-        request_.assemble ? ReplanDepth::kFound : ReplanDepth::kClimbed;
     ReplanResult on_part =
         Replan(hand_, task, *pair.solid_N, parameters_,
-               DeriveSeed(request_.seed, {kReplan, p, s}), depth);
+               DeriveSeed(request_.seed, {kReplan, p, s}),
+               {.climb = !request_.assemble,
+                .epsilon_to_beat = record.open_close_epsilon_part});
     const double replanned = ThreadSeconds();
     record.transfer_seconds = replanned - start;
     record.transfer = on_part.outcome;
@@ -226,7 +226,8 @@ class Transferrer {
     if (request_.assemble) {
       ReplanResult on_whole =
           Assemble(hand_, task, *on_part.grasp, *whole_N_, parameters_,
-                   DeriveSeed(request_.seed, {kAssemble, p, s}));
+                   DeriveSeed(request_.seed, {kAssemble, p, s}),
+                   {.epsilon_to_beat = record.open_close_epsilon_whole});
       record.assembly_seconds = ThreadSeconds() - replanned;
       record.assembly = on_whole.outcome;
       if (!on_whole.grasp) return;

@@ -79,14 +79,15 @@ bool PalmCollides(const HandShape& hand, const RigidTransform& X_NH,
 class Replanner {
  public:
   Replanner(const HandShape& hand, const TransferTask& task, const Solid& solid,
-            const Parameters& parameters, uint64_t seed, ReplanDepth depth)
+            const Parameters& parameters, uint64_t seed,
+            const ReplanOptions& options)
       : hand_(hand),
         task_(task),
         solid_(solid),
         parameters_(parameters),
         replan_(parameters.replan),
         seed_(seed),
-        depth_(depth),
+        options_(options),
         random_(seed) {}
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
@@ -96,7 +97,7 @@ class Replanner {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles);
     if (!best_) return {furthest_, std::nullopt};
-    if (depth_ == ReplanDepth::kClimbed && replan_.grip_copies > 0) Climb();
+    if (options_.climb && replan_.grip_copies > 0) Climb();
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
 
@@ -183,12 +184,12 @@ class Replanner {
     }
   }
 
-  // From the best grasp to better ones around it; once the grip is enough, as
+  // From the best grasp to better ones around it; once it is sure enough, as
   // long as eps grows.
   void Climb() {
     int since_gain = 0;
     for (int i = 0; i < replan_.climb_samples; ++i) {
-      if (merit_.gripped >= replan_.enough_grip &&
+      if (merit_.sure >= replan_.enough_grip &&
           since_gain >= replan_.patience) {
         break;
       }
@@ -202,23 +203,30 @@ class Replanner {
   // What chooses between grasps: how sure the grip is, then, as long as that is
   // not enough, how well the motors' forces balance, then eps.
   struct Merit {
-    double gripped{-1.0};    // Up to what is enough; -1: no grasp.
-    double unbalanced{0.0};  // Minus CalcGrip(); 0 when gripped is enough.
+    double sure{-2.0};  // Share of copies held, up to what is enough, less what
+                        // it costs not to beat open-close; -2: no grasp.
+    double unbalanced{0.0};  // Minus CalcGrip(); 0 when the grip is enough.
     double epsilon{0.0};
 
     auto operator<=>(const Merit&) const = default;
   };
 
+  double CalcCost(double epsilon) const {
+    return epsilon > options_.epsilon_to_beat ? 0.0 : replan_.behind_cost;
+  }
+
   Merit CalcMerit(const Grasp& grasp) const {
-    Merit merit{0.0, 0.0, grasp.quality.epsilon};
+    const double epsilon = grasp.quality.epsilon;
+    Merit merit{0.0, 0.0, epsilon};
     if (replan_.grip_copies == 0) return merit;
-    const double least = std::max(kLeastGrip, merit_.gripped);
+    const double cost = CalcCost(epsilon);
+    const double least = std::max(kLeastGrip, merit_.sure + cost);
     const double share =
         CalcRobustness(hand_, grasp, solid_, parameters_, seed_,
                        {.copies = replan_.grip_copies, .least_gripped = least})
             .gripped;
-    merit.gripped = std::min(share, replan_.enough_grip);
-    if (merit.gripped < replan_.enough_grip) {
+    merit.sure = std::min(share, replan_.enough_grip) - cost;
+    if (share < replan_.enough_grip) {
       merit.unbalanced = -CalcGrip(hand_, grasp, solid_.mass(), parameters_);
     }
     return merit;
@@ -226,8 +234,10 @@ class Replanner {
 
   // Whether it is worth a closer look.
   bool MayBeBetter(const Grasp& grasp) const {
-    return !best_ || grasp.quality.epsilon > merit_.epsilon ||
-           (replan_.grip_copies > 0 && merit_.gripped < replan_.enough_grip);
+    const double epsilon = grasp.quality.epsilon;
+    if (!best_ || epsilon > merit_.epsilon) return true;
+    return replan_.grip_copies > 0 &&
+           merit_.sure < replan_.enough_grip - CalcCost(epsilon);
   }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
@@ -344,7 +354,7 @@ class Replanner {
   const Parameters& parameters_;
   const ReplanParameters& replan_;
   const uint64_t seed_;
-  const ReplanDepth depth_;
+  const ReplanOptions options_;
   Random random_;
   std::optional<Grasp> best_;
   Merit merit_;         // Of the best …
@@ -418,18 +428,19 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
 
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
-                    uint64_t seed, ReplanDepth depth) {
+                    uint64_t seed, const ReplanOptions& options) {
   std::vector<RigidTransform> starts{task.X_NH};
   if (parameters.replan.aimed_starts) {
     starts.push_back(
         Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
   }
-  return Replanner(hand, task, solid, parameters, seed, depth).Run(starts);
+  return Replanner(hand, task, solid, parameters, seed, options).Run(starts);
 }
 
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
                       const Grasp& transferred, const Solid& whole,
-                      const Parameters& parameters, uint64_t seed) {
+                      const Parameters& parameters, uint64_t seed,
+                      const ReplanOptions& options) {
   TransferTask on_whole = task;
   on_whole.q_pregrasp = transferred.q_pregrasp;
   std::vector<RigidTransform> starts{transferred.configuration.X_OH};
@@ -440,8 +451,7 @@ ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
   } else if (PalmCollides(hand, starts[0], transferred.q_pregrasp, whole)) {
     return {TransferOutcome::kPalmCollision, std::nullopt};
   }
-  return Replanner(hand, on_whole, whole, parameters, seed,
-                   ReplanDepth::kClimbed)
+  return Replanner(hand, on_whole, whole, parameters, seed, options)
       .Run(starts);
 }
 

@@ -44,10 +44,10 @@ bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
  near T* X_EH. */
 RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 
-/** How far replanning goes. */
-enum class ReplanDepth {
-  kFound,    ///< To a grasp that counts.
-  kClimbed,  ///< To the best one around it.
+/** What replanning is to reach. */
+struct ReplanOptions {
+  bool climb{true};  ///< Not only a grasp that counts but the best around it.
+  double epsilon_to_beat{0.0};  ///< What open-close reaches.
 };
 
 /** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
@@ -55,11 +55,12 @@ enum class ReplanDepth {
  extra_samples others; each free one closes its fingers, its pre-grasp timed by
  TimeFingers(). Of the stable, reachable, near-enough grasps the answer is the
  one with the largest ε, or, with grip_copies, the one that the most perturbed
- copies hold, up to enough_grip, then ε; when that is wanted, climb_samples more
- are then tried around the best. Deterministic for a seed. @paper{Sec. V-B} */
+ copies hold, up to enough_grip, where an ε that does not beat open-close costs
+ behind_cost of them; then ε. When that is wanted, climb_samples more are then
+ tried around the best. Deterministic for a seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
-                    uint64_t seed, ReplanDepth depth = ReplanDepth::kClimbed);
+                    uint64_t seed, const ReplanOptions& options = {});
 
 /** Assembly: the grasp of the part on the whole object, replanned there from
  where it is and, with aimed_starts, from T* X_EH and FitWrist(). Without them,
@@ -67,7 +68,8 @@ ReplanResult Replan(const HandShape& hand, const TransferTask& task,
  @paper{Sec. V-C} */
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
                       const Grasp& transferred, const Solid& whole,
-                      const Parameters& parameters, uint64_t seed);
+                      const Parameters& parameters, uint64_t seed,
+                      const ReplanOptions& options = {});
 
 /** The open-close baseline: at T* X_EH the colliding fingers are straightened,
  then all close; no replanning. ε, or 0 when it is not stable.
