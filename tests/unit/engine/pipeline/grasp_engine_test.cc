@@ -35,9 +35,10 @@ class GripperPipeline : public ::testing::Test {
     p.active_learning.queries_per_round = 100;
     p.active_learning.test_samples = 50;
     p.swarm.particles = 40;
-    p.swarm.iterations = 40;
+    p.swarm.iterations = 25;
     p.mapping.samples = 400;
     p.replan.iterations = 30;
+    p.replan.climb_samples = 20;
     return p;
   }
 

@@ -127,6 +127,7 @@ class ServiceTest : public ::testing::Test {
     order.category = "mug";
     order.part_labels = {"body"};
     order.sources = 4;
+    order.parameters.replan.climb_samples = 10;
     return order;
   }
 
