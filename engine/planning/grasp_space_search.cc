@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -13,38 +12,17 @@
 #include "engine/base/random.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/planning/grasp_archive.h"
+#include "engine/planning/grasp_coverage.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/quality/opposed_contacts.h"
 
 namespace graspdb {
 namespace {
 
-constexpr int kNiches = 26;
 // Particles pass through nothing thicker than this, metres.
 constexpr double kMoveStep = 0.001;
 // The residual, N, that stands for no grip at all in a particle's measure.
 constexpr double kNoGrip = 5.0;
-
-// The 26 directions with coordinates -1, 0, 1; the nearest one's index.
-int FindNiche(const Eigen::Vector3d& direction) {
-  int best = 0, index = 0;
-  double best_cosine = -2.0;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const double cosine =
-            direction.dot(Eigen::Vector3d(x, y, z).normalized());
-        if (cosine > best_cosine) {
-          best_cosine = cosine;
-          best = index;
-        }
-        ++index;
-      }
-    }
-  }
-  return best;
-}
 
 // A step in the tangent space of postures: metres, radians, motors.
 struct Velocity {
@@ -86,7 +64,7 @@ class Swarm {
         seed_(seed),
         constriction_(CalcConstriction(2.0 * swarm_.acceleration)),
         archive_(parameters.distinct),
-        niche_best_(kNiches, -1),
+        niche_best_(kNumApproaches, -1),
         particles_(swarm_.particles) {}
 
   GraspSearchResult Run(ExecutionContext& context) {
@@ -120,11 +98,8 @@ class Swarm {
     GraspSearchResult result;
     result.grasps = archive_.MakeSorted();
     result.configurations_tried = iteration * swarm_.particles;
-    std::set<int> niches;
-    for (const Grasp& grasp : result.grasps) {
-      niches.insert(FindNiche(grasp.approach_O));
-    }
-    result.coverage = static_cast<double>(niches.size()) / kNiches;
+    result.coverage =
+        CalcGraspCoverage(result.grasps, part_.mesh_O()).approaches;
     return result;
   }
 
@@ -171,8 +146,8 @@ class Swarm {
     particle.best_measure = std::numeric_limits<double>::infinity();
     particle.best = particle.here;
     particle.stale = 0;
-    particle.niche = swarm_.niches ? FindNiche(particle.here.X_OH.rotation *
-                                               hand_.model().approach_H())
+    particle.niche = swarm_.niches ? FindApproach(particle.here.X_OH.rotation *
+                                                  hand_.model().approach_H())
                                    : 0;
   }
 
@@ -302,7 +277,7 @@ class Swarm {
     std::map<int, std::vector<int>> niches;
     for (int i = 0; i < archive_.size(); ++i) {
       const Grasp& grasp = archive_.grasps()[static_cast<size_t>(i)];
-      niches[FindNiche(grasp.approach_O)].push_back(i);
+      niches[FindApproach(grasp.approach_O)].push_back(i);
     }
     found_by_niche_.clear();
     for (auto& [niche, found] : niches) {

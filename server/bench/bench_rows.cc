@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/planning/grasp_coverage.h"
 #include "server/bench/statistics.h"
 
 namespace graspdb {
@@ -96,7 +97,11 @@ Json EncodeProportion(int hits, int count) {
 }
 
 Json MakeLearningRow(const StoredGraspSpace& space, int triangles,
-                     const std::vector<double>& epsilons) {
+                     const std::vector<Grasp>& grasps,
+                     const TriangleMesh& part_O) {
+  std::vector<double> epsilons;
+  for (const Grasp& grasp : grasps) epsilons.push_back(grasp.quality.epsilon);
+  const GraspCoverage coverage = CalcGraspCoverage(grasps, part_O);
   Json row;
   row["category"] = space.category;
   row["part"] = space.part_label;
@@ -104,7 +109,8 @@ Json MakeLearningRow(const StoredGraspSpace& space, int triangles,
   row["configuration_space_seconds"] = space.configuration_space_seconds;
   row["search_seconds"] = space.seconds - space.configuration_space_seconds;
   row["grasps"] = space.num_grasps;
-  row["coverage"] = space.coverage;
+  row["coverage"] = coverage.approaches;
+  row["pair_coverage"] = coverage.pairs;
   row["configurations_tried"] = space.configurations_tried;
   row["median_epsilon"] = CalcQuantile(epsilons, 0.5);
   row["curve"] = Json::array();

@@ -20,9 +20,10 @@ using TestScores = std::map<std::string, std::map<std::string, double>>;
 
 /** Table I and more: one learned grasp space.
  @param triangles  Of the part's surface.
- @param epsilons  Of its grasps. */
+ @param grasps  What was learned of it. @param part_O  The part's solid. */
 Json MakeLearningRow(const StoredGraspSpace& space, int triangles,
-                     const std::vector<double>& epsilons);
+                     const std::vector<Grasp>& grasps,
+                     const TriangleMesh& part_O);
 
 /** Tables II and III and more: one part of a transfer's object.
  @param grasps  Those of both stages, in the order in which a server ranks them.

@@ -170,6 +170,7 @@ std::string MakeLearningTable(const Json& variant) {
          theirs(std::to_string(p.grasps)),
          fmt::format("{:.3f}", row["median_epsilon"].get<double>()),
          Percent(row["coverage"].get<double>()),
+         Percent(row["pair_coverage"].get<double>()),
          last.is_null() ? "-"
                         : Percent(last["balanced_accuracy"].get<double>()),
          last.is_null() ? "-"
@@ -178,8 +179,8 @@ std::string MakeLearningTable(const Json& variant) {
   return MakeTable(
       {"part", "triangles", Muted("paper"), "configuration space, s",
        Muted("paper"), "search, s", Muted("paper"), "distinct stable grasps",
-       Muted("paper"), "median eps", "approach directions", "balanced accuracy",
-       "near the boundary"},
+       Muted("paper"), "median eps", "approach directions",
+       "of direction and region", "balanced accuracy", "near the boundary"},
       rows);
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/contract.h"
 #include "server/bench/bench_items.h"
 #include "server/bench/bench_rows.h"
 #include "server/bench/html_report.h"
@@ -187,12 +188,13 @@ class PaperBench {
                                        const StoredGraspSpace& space) {
     GRASPDB_TRY(part, service.store().FindPart(space.part_id));
     GRASPDB_TRY(learned, service.store().ReadGraspSpace(space.id));
-    std::vector<double> epsilons;
-    for (const Grasp& grasp : learned.grasps) {
-      epsilons.push_back(grasp.quality.epsilon);
-    }
+    GRASPDB_TRY(solids, service.store().ReadSolids(part.object_id));
+    const auto solid = std::find_if(
+        solids.begin(), solids.end(),
+        [&](const Part& one) { return one.label == part.label_index; });
+    GRASPDB_EXPECTS(solid != solids.end());
     return MakeLearningRow(space, static_cast<int>(part.faces.size()),
-                           epsilons);
+                           learned.grasps, solid->solid_O);
   }
 
   // All rows of one object: read, when they were made before for the same
