@@ -100,7 +100,7 @@ class ClosingRun {
     watches_.resize(static_cast<size_t>(hand_.model().num_links()));
   }
 
-  ClosingOutcome Run() {
+  ClosingOutcome Run(Push push) {
     ClosingOutcome outcome;
     LeadIn();
     const State start = state_;
@@ -114,7 +114,7 @@ class ClosingRun {
       rest = turns || !IsCalm() ? 0.0 : rest + parameters_.time_step;
     }
     outcome.settled = rest >= parameters_.settle_seconds && !touches_.empty();
-    outcome.held = outcome.settled && WithstandsPushes();
+    outcome.held = outcome.settled && Withstands(push);
     return outcome;
   }
 
@@ -410,11 +410,11 @@ class ClosingRun {
     return !(shift < parameters_.max_shift && turn < parameters_.max_turn);
   }
 
-  // Along each axis of O, both ways, each from where it settled.
-  bool WithstandsPushes() {
-    if (parameters_.push == 0.0) return true;
+  bool Withstands(Push which) {
+    if (parameters_.push == 0.0 || which == Push::kNone) return true;
     const State settled = state_;
     for (int i = 0; i < 6; ++i) {
+      if (which != Push::kAll && which != static_cast<Push>(i)) continue;
       state_ = settled;
       for (Watch& watch : watches_) watch.until = 0.0;
       Eigen::Vector3d push = Eigen::Vector3d::Zero();
@@ -452,8 +452,8 @@ class ClosingRun {
 
 ClosingOutcome ClosingSimulation::Run(const RigidTransform& X_OH,
                                       const Eigen::VectorXd& q_open,
-                                      double friction) const {
-  return ClosingRun(*this, X_OH, q_open, friction).Run();
+                                      double friction, Push push) const {
+  return ClosingRun(*this, X_OH, q_open, friction).Run(push);
 }
 
 }  // namespace graspdb

@@ -10,12 +10,28 @@
 
 namespace graspdb {
 
+/** Which pushes an object is to withstand, once it is at rest between the
+ fingers, each of hold.push from where it settled. */
+enum class Push {
+  kPlusX,
+  kMinusX,
+  kPlusY,
+  kMinusY,
+  kPlusZ,
+  kMinusZ,
+  kAll,
+  kNone
+};
+
+/** Those along one axis are numbered from 0. */
+inline constexpr int kNumPushes = 6;
+
 /** What became of an object that a hand closed on. */
 struct ClosingOutcome {
   bool settled{false};  ///< At rest between the fingers, not far from where …
   double shift{0.0};    ///< … it was: how far its mass centre went, m, …
   double turn{0.0};     ///< … and how far it turned, rad.
-  bool held{false};     ///< Settled, and withstood every push.
+  bool held{false};     ///< Settled, and withstood the pushes.
 };
 
 /** Whether a hand holds what it closes on: the object floats, the hand's base
@@ -34,9 +50,10 @@ class ClosingSimulation {
                     const MotorParameters& motors);
 
   /** @param X_OH  Where the hand stands. @param q_open  All joints before
-   closing, free of collision. @param friction  Coulomb's. */
+   closing, free of collision. @param friction  Coulomb's. @param push  Along
+   the axes of O. */
   ClosingOutcome Run(const RigidTransform& X_OH, const Eigen::VectorXd& q_open,
-                     double friction) const;
+                     double friction, Push push = Push::kAll) const;
 
  private:
   friend class ClosingRun;

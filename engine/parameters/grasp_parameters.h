@@ -103,7 +103,7 @@ struct HoldParameters {
   double closing_speed{1.0};
   double stiffness{100.0};
   double contact_stiffness{5e4};
-  double push{0.0};
+  double push{1.0};
   double push_seconds{0.3};
   double settle_seconds{0.06};
   double max_shift{0.02};
@@ -120,7 +120,7 @@ struct HoldParameters {
     f("contact_stiffness", self.contact_stiffness,
       ParameterInfo{"N/m", 1, 1e9, "ours: of a point of the skin"});
     f("push", self.push,
-      ParameterInfo{"N", 0, 1e3, "ours: once at rest, along each axis"});
+      ParameterInfo{"N", 0, 1e3, "ours: once at rest, along an axis"});
     f("push_seconds", self.push_seconds,
       ParameterInfo{"s", 1e-3, 100, "ours: long enough to get going"});
     f("settle_seconds", self.settle_seconds,

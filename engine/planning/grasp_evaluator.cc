@@ -189,7 +189,10 @@ Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
     if (!copy.ok()) continue;
     ++stable;
     if (options.gripped &&
-        simulation.Run(X_OH, grasp.q_pregrasp, perturbed.contact.friction)
+        simulation
+            .Run(X_OH, grasp.q_pregrasp, perturbed.contact.friction,
+                 options.pushed ? static_cast<Push>(i % kNumPushes)
+                                : Push::kNone)
             .held) {
       ++gripped;
     }

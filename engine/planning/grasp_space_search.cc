@@ -268,6 +268,7 @@ class Swarm {
         CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
                        {.copies = swarm_.robust_copies,
                         .gripped = swarm_.min_grip > 0.0,
+                        .pushed = false,
                         .least_gripped = swarm_.min_grip});
     return robustness.stable >= swarm_.min_robustness &&
            robustness.gripped >= swarm_.min_grip;
