@@ -40,13 +40,7 @@ class DistanceField {
     if (!(u.minCoeff() >= 0.0 && (u.array() <= last_.array()).all())) {
       return Eigen::Vector3d::Zero();
     }
-    std::array<int, 3> i;
-    std::array<double, 3> t;
-    for (int k = 0; k < 3; ++k) {
-      i[k] = std::min(static_cast<int>(u[k]), count_[k] - 2);
-      t[k] = u[k] - i[k];
-    }
-    const float* v = &values_[i[0] + stride_y_ * i[1] + stride_z_ * i[2]];
+    const auto [v, t] = FindCell(u);
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     for (int c = 0; c < 8; ++c) {
       const int x = c & 1;
@@ -71,16 +65,27 @@ class DistanceField {
   double cell_size() const { return cell_; }
 
  private:
-  // At u cells from the origin, within the grid.
-  double Interpolate(const Eigen::Vector3d& u) const {
-    std::array<int, 3> i;
+  // A cell by its corner, and where in it a point is, 0 to 1.
+  struct InCell {
+    const float* v;
     std::array<float, 3> t;
+  };
+
+  // At u cells from the origin, within the grid.
+  InCell FindCell(const Eigen::Vector3d& u) const {
+    std::array<int, 3> i;
+    InCell found;
     for (int k = 0; k < 3; ++k) {
       i[k] = std::min(static_cast<int>(u[k]), count_[k] - 2);
-      t[k] = static_cast<float>(u[k] - i[k]);
+      found.t[k] = static_cast<float>(u[k] - i[k]);
     }
-    const float* v = &values_[i[0] + stride_y_ * i[1] + stride_z_ * i[2]];
-    const auto along_x = [&t](const float* row) {
+    found.v = &values_[i[0] + stride_y_ * i[1] + stride_z_ * i[2]];
+    return found;
+  }
+
+  double Interpolate(const Eigen::Vector3d& u) const {
+    const auto [v, t] = FindCell(u);
+    const auto along_x = [&t = t](const float* row) {
       return row[0] + t[0] * (row[1] - row[0]);
     };
     const auto along_xy = [&](const float* slice) {

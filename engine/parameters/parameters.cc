@@ -39,6 +39,9 @@ Parameters SelectForLearning(const Parameters& parameters) {
   selected.segmentation = {};
   selected.mapping = {};
   selected.replan = {};
+  // Examples are not pushed, see ADR 14.
+  selected.hold.push = HoldParameters().push;
+  selected.hold.push_seconds = HoldParameters().push_seconds;
   return selected;
 }
 

@@ -34,6 +34,8 @@ std::vector<BenchVariant> MakeAblations() {
           [](Parameters& p) { p.replan.grip_weight = 0.0; });
   without("grip when grasps are chosen",
           [](Parameters& p) { p.replan.grip_copies = 0; });
+  without("pushes when grasps are chosen",
+          [](Parameters& p) { p.hold.push = 0.0; });
   without("niches", [](Parameters& p) { p.swarm.niches = false; });
   return ablations;
 }
