@@ -18,7 +18,8 @@ constexpr double kLeastLever = 0.01;  // Of a link without a shape, m.
 // near as a finger moves in it, and a little farther; those within this of them
 // are looked at until something has moved so far, m.
 constexpr double kMargin = 1.2;
-constexpr double kWatched = 0.006;
+constexpr double kSkin = 3e-5;
+constexpr double kWatched = 0.003;
 // Below this speed, m/s, what rubs is taken to stick.
 constexpr double kStickingSpeed = 1e-4;
 // Passes in which the contacts of a step find out whether they press and slip.
@@ -27,8 +28,14 @@ constexpr int kPasses = 2;
 constexpr double kStalled = 0.1;
 // An object all of whose points are slower than this is at rest, m/s.
 constexpr double kCalmSpeed = 0.005;
-// The fingers are brought so near before anything is simulated, m.
-constexpr double kLeadIn = 0.002;
+// Fingers that are away from a still object move on without a simulation, until
+// they are as near as this, m …
+constexpr double kLeapNear = 0.001;
+// … if that is worth so many steps. Still is slower than this, m/s, for so many
+// steps.
+constexpr int kLeapSteps = 4;
+constexpr double kStillSpeed = 0.001;
+constexpr int kStillSteps = 5;
 constexpr double kLongestClosing = 4.0;  // s.
 constexpr double kRampSeconds = 0.1;
 
@@ -97,20 +104,32 @@ class ClosingRun {
     state_.p_WC = solid_.mass().p_McCM;
     state_.velocity = Eigen::VectorXd::Zero(size_);
     blocked_.assign(joints_.size(), false);
+    speeds_.assign(joints_.size(), 0.0);
+    twists_.resize(joints_.size());
+    state_.motors.resize(static_cast<Eigen::Index>(joints_.size()));
+    for (size_t k = 0; k < joints_.size(); ++k) {
+      state_.motors[static_cast<Eigen::Index>(k)] = q[joints_[k].joint];
+    }
     watches_.resize(static_cast<size_t>(hand_.model().num_links()));
   }
 
   ClosingOutcome Run(Push push) {
     ClosingOutcome outcome;
-    LeadIn();
     const State start = state_;
     double rest = 0.0;
+    int still = kStillSteps;
     for (double t = 0.0;
          t < kLongestClosing && rest < parameters_.settle_seconds;
          t += parameters_.time_step) {
       const bool turns = TurnMotors();
+      if (turns && still >= kStillSteps) {
+        const double seconds = Leap();
+        t += seconds;
+        if (seconds == 0.0) still = 0;
+      }
       Step(Eigen::Vector3d::Zero());
       if (IsLost(start, outcome.shift, outcome.turn)) return outcome;
+      still = CalcObjectSpeed() < kStillSpeed ? still + 1 : 0;
       rest = turns || !IsCalm() ? 0.0 : rest + parameters_.time_step;
     }
     outcome.settled = rest >= parameters_.settle_seconds && !touches_.empty();
@@ -119,6 +138,9 @@ class ClosingRun {
   }
 
  private:
+  using Twist = Eigen::Matrix<double, 6, 1>;  // v of the point at p_WC, then w.
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
   struct State {
     Eigen::VectorXd q;       // All joints …
     Eigen::VectorXd motors;  // … and where the closing ones' motors are.
@@ -129,11 +151,16 @@ class ClosingRun {
 
   // A probe of a link that is, or will be, in contact.
   struct Touch {
-    int link;
     double distance;       // Negative inside.
     Eigen::Vector3d nhat;  // Out of the object.
     Eigen::Vector3d arm;   // From the object's mass centre.
-    Eigen::Vector3d p_W;
+  };
+
+  // Where a link touches: a range of touches_.
+  struct Contacts {
+    int link;
+    size_t begin;
+    size_t end;
   };
 
   struct Probe {
@@ -153,41 +180,49 @@ class ClosingRun {
     return {state_.R_WO, state_.p_WC - state_.R_WO * solid_.mass().p_McCM};
   }
 
-  // Before a finger has come near the object nothing happens.
-  void LeadIn() {
-    double closing_speed = 0.0;
-    for (int link = 0; link < hand_.model().num_links(); ++link) {
-      double speed = 0.0;
-      for (const int k : simulation_.movers_[static_cast<size_t>(link)]) {
-        const auto& joint = joints_[static_cast<size_t>(k)];
-        speed += joint.speed * hand_.motion_bound(link, joint.joint);
-      }
-      closing_speed = std::max(closing_speed, speed);
-    }
-    const RigidTransform X_OH = CalcObjectPose().Inverse() * X_WH_;
-    for (int round = 0; round < 20 && closing_speed > 0.0; ++round) {
-      const auto X_HL = CalcLinkPoses(hand_.model(), state_.q);
-      double gap = 1e300;
-      for (int link = 0; link < hand_.model().num_links(); ++link) {
-        if (!hand_.link(link) ||
-            simulation_.movers_[static_cast<size_t>(link)].empty()) {
-          continue;
-        }
-        gap = std::min(gap, EstimateGap(*hand_.link(link),
-                                        X_OH * X_HL[static_cast<size_t>(link)],
-                                        solid_, kLeadIn));
-      }
-      if (gap <= kLeadIn) break;
-      const double seconds = (gap - 0.5 * kLeadIn) / closing_speed;
-      for (const auto& joint : joints_) {
-        double& q = state_.q[joint.joint];
-        q = std::min(q + seconds * joint.speed, Upper(joint.joint));
-      }
-    }
-    state_.motors.resize(static_cast<Eigen::Index>(joints_.size()));
+  // Moves on what turns, unless it touches the object or is near it. @returns
+  // the time that this takes, s.
+  double Leap() {
+    double seconds = kLongestClosing;
     for (size_t k = 0; k < joints_.size(); ++k) {
-      state_.motors[static_cast<Eigen::Index>(k)] = state_.q[joints_[k].joint];
+      if (speeds_[k] == 0.0) continue;
+      const double left = Upper(joints_[k].joint) - state_.q[joints_[k].joint];
+      seconds = std::min(seconds, left / speeds_[k]);
     }
+    for (const Contacts& contacts : contacts_) {
+      if (CalcTurningSpeed(contacts.link) > 0.0) return 0.0;
+    }
+    const double worth = kLeapSteps * parameters_.time_step;
+    const RigidTransform X_OH = CalcObjectPose().Inverse() * X_WH_;
+    const auto X_HL = CalcLinkPoses(hand_.model(), state_.q);
+    for (int link = 0; link < hand_.model().num_links(); ++link) {
+      const double speed = CalcTurningSpeed(link);
+      if (!hand_.link(link) || speed == 0.0) continue;
+      const double gap =
+          EstimateGap(*hand_.link(link), X_OH * X_HL[static_cast<size_t>(link)],
+                      solid_, kLeapNear + worth * speed);
+      seconds = std::min(seconds, (gap - kLeapNear) / speed);
+      if (seconds < worth) return 0.0;
+    }
+    for (size_t k = 0; k < joints_.size(); ++k) {
+      state_.q[joints_[k].joint] += seconds * speeds_[k];
+      state_.motors[static_cast<Eigen::Index>(k)] += seconds * speeds_[k];
+    }
+    for (int link = 0; link < hand_.model().num_links(); ++link) {
+      watches_[static_cast<size_t>(link)].travel +=
+          seconds * CalcTurningSpeed(link);
+    }
+    return seconds;
+  }
+
+  // How fast a link's points move, at most, as the motors turn, m/s.
+  double CalcTurningSpeed(int link) const {
+    double speed = 0.0;
+    for (const int k : simulation_.movers_[static_cast<size_t>(link)]) {
+      speed += speeds_[static_cast<size_t>(k)] *
+               hand_.motion_bound(link, joints_[static_cast<size_t>(k)].joint);
+    }
+    return speed;
   }
 
   double Upper(int joint) const {
@@ -208,6 +243,7 @@ class ClosingRun {
       const double most_lead = joint.closing_torque / joint.stiffness;
       const double q = state_.q[joint.joint];
       double& motor = state_.motors[i];
+      speeds_[k] = 0.0;
       if ((motor - q >= 0.99 * most_lead &&
            state_.velocity[6 + i] < kStalled * joint.speed) ||
           motor >= Upper(joint.joint)) {
@@ -215,9 +251,8 @@ class ClosingRun {
       }
       if (!blocked_[k]) {
         turns = true;
-        const double speed =
-            before_blocked ? joint.released_speed : joint.speed;
-        motor = std::min({motor + speed * parameters_.time_step,
+        speeds_[k] = before_blocked ? joint.released_speed : joint.speed;
+        motor = std::min({motor + speeds_[k] * parameters_.time_step,
                           Upper(joint.joint), q + most_lead});
       }
       before_blocked = before_blocked || blocked_[k];
@@ -232,24 +267,30 @@ class ClosingRun {
     X_WL_ = CalcLinkPoses(hand_.model(), state_.q);
     const RigidTransform X_OW = CalcObjectPose().Inverse();
     const DistanceField& field = solid_.field();
-    const double near = simulation_.near_;
+    const double object_speed = CalcObjectSpeed();
     touches_.clear();
+    contacts_.clear();
     for (int link = 0; link < hand_.model().num_links(); ++link) {
       const auto l = static_cast<size_t>(link);
       X_WL_[l] = X_WH_ * X_WL_[l];
       if (!hand_.link(link)) continue;
       const RigidTransform X_OL = X_OW * X_WL_[l];
+      const double near =
+          std::min(simulation_.near_,
+                   kSkin + kMargin * parameters_.time_step *
+                               (object_speed + CalcTurningSpeed(link)));
       Watch& watch = watches_[l];
       if (watch.travel >= watch.until) {
         watch.until = watch.travel + kWatched;
         watch.probes.clear();
         hand_.link(link)->tree.VisitNear(
             [&](const Eigen::Vector3d& p_L) { return field.Calc(X_OL * p_L); },
-            kWatched + near,
+            kWatched + simulation_.near_,
             [&](const Eigen::Vector3d& p_L) {
               watch.probes.push_back({p_L, watch.travel});
             });
       }
+      const size_t begin = touches_.size();
       for (Probe& probe : watch.probes) {
         if (watch.travel < probe.wake) continue;
         const Eigen::Vector3d p_O = X_OL * probe.p_L;
@@ -261,33 +302,29 @@ class ClosingRun {
         const Eigen::Vector3d gradient = field.CalcGradient(p_O);
         const double norm = gradient.norm();
         if (!(norm > 0.0)) continue;
-        const Eigen::Vector3d p_W = X_WL_[l] * probe.p_L;
-        touches_.push_back({link, distance, state_.R_WO * (gradient / norm),
-                            p_W - state_.p_WC, p_W});
+        touches_.push_back({distance, state_.R_WO * (gradient / norm),
+                            X_WL_[l] * probe.p_L - state_.p_WC});
+      }
+      if (touches_.size() > begin) {
+        contacts_.push_back({link, begin, touches_.size()});
       }
     }
     for (size_t k = 0; k < joints_.size(); ++k) {
       const HandJoint& joint =
           hand_.model().joints()[static_cast<size_t>(joints_[k].joint)];
       const RigidTransform& X_WJ = X_WL_[static_cast<size_t>(joint.child_link)];
-      slides_[k] = joint.type == JointType::kPrismatic;
-      p_WJ_[k] = X_WJ.translation;
-      axis_W_[k] = X_WJ.rotation * joint.axis_J;
+      const Eigen::Vector3d axis_W = X_WJ.rotation * joint.axis_J;
+      if (joint.type == JointType::kPrismatic) {
+        twists_[k] << axis_W, Eigen::Vector3d::Zero();
+      } else {
+        twists_[k] << axis_W.cross(state_.p_WC - X_WJ.translation), axis_W;
+      }
     }
-  }
-
-  // How fast a touch's point on the link moves per unit of joint k.
-  Eigen::Vector3d CalcColumn(const Touch& touch, size_t k) const {
-    if (slides_[k]) return axis_W_[k];
-    return axis_W_[k].cross(touch.p_W - p_WJ_[k]);
   }
 
   // Implicit Euler with contacts that are springs along their normals and
   // dashpots, as stiff as Coulomb's law allows, across.
   void Step(const Eigen::Vector3d& push) {
-    p_WJ_.resize(joints_.size());
-    axis_W_.resize(joints_.size());
-    slides_.resize(joints_.size());
     FindTouches();
     const double dt = parameters_.time_step;
     Eigen::MatrixXd& A0 = A0_;
@@ -318,7 +355,7 @@ class ClosingRun {
     for (int pass = 0; pass < kPasses; ++pass) {
       A_ = A0;
       b_ = b0;
-      for (const Touch& touch : touches_) AddTouch(touch, x);
+      for (const Contacts& contacts : contacts_) AddContacts(contacts, x);
       solver_.compute(A_);
       x = solver_.solve(b_);
     }
@@ -326,45 +363,59 @@ class ClosingRun {
     Move();
   }
 
-  // What a touch presses and rubs, given the speeds x of the pass before, to
-  // the lower half of A and to b.
-  void AddTouch(const Touch& touch, const Eigen::VectorXd& x) {
+  // What a link's touches press and rub, given the speeds x of the pass
+  // before, to the lower half of A and to b.
+  void AddContacts(const Contacts& contacts, const Eigen::VectorXd& x) {
     const double dt = parameters_.time_step;
-    const std::vector<int>& movers =
-        simulation_.movers_[static_cast<size_t>(touch.link)];
-    Eigen::Vector3d v = -x.head<3>() - x.segment<3>(3).cross(touch.arm);
-    for (const int k : movers) {
-      v += x[6 + k] * CalcColumn(touch, static_cast<size_t>(k));
-    }
     const double stiffness = parameters_.contact_stiffness;
-    const double approach = touch.nhat.dot(v);
-    const double normal_force = -stiffness * (touch.distance + dt * approach);
-    if (normal_force <= 0.0) return;
-    const double slip = (v - approach * touch.nhat).norm();
-    const double rub =
-        friction_ * normal_force / std::max(slip, kStickingSpeed);
-    // Force on the object = f0 n + W v.
-    Eigen::Matrix3d W =
-        (stiffness * dt - rub) * touch.nhat * touch.nhat.transpose();
-    W.diagonal().array() += rub;
-    const double f0 = -stiffness * touch.distance;
-    const Eigen::Matrix3d arm = MakeCross(touch.arm);
-    const Eigen::Matrix3d W_arm = W * arm;
-    A_.topLeftCorner<3, 3>() += W;
-    A_.block<3, 3>(3, 0) -= W_arm.transpose();
-    A_.block<3, 3>(3, 3) -= arm * W_arm;
-    b_.head<3>() -= f0 * touch.nhat;
-    b_.segment<3>(3) -= f0 * touch.arm.cross(touch.nhat);
+    const std::vector<int>& movers =
+        simulation_.movers_[static_cast<size_t>(contacts.link)];
+    // Of the link against the object.
+    Twist twist = -x.head<6>();
     for (const int k : movers) {
-      const Eigen::Vector3d column = CalcColumn(touch, static_cast<size_t>(k));
-      const Eigen::Vector3d W_column = W * column;
-      A_.block<1, 3>(6 + k, 0) -= W_column.transpose();
-      A_.block<1, 3>(6 + k, 3) += column.transpose() * W_arm;
-      b_[6 + k] += f0 * column.dot(touch.nhat);
+      twist += x[6 + k] * twists_[static_cast<size_t>(k)];
+    }
+    // The wrench on the object is M twist - w. What rubs adds as mass does, by
+    // its sum and its first and second moments.
+    Matrix6 M = Matrix6::Zero();
+    Twist w = Twist::Zero();
+    double sum = 0.0;
+    Eigen::Vector3d first = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+    for (size_t i = contacts.begin; i < contacts.end; ++i) {
+      const Touch& touch = touches_[i];
+      const Eigen::Vector3d v =
+          twist.head<3>() + twist.tail<3>().cross(touch.arm);
+      const double approach = touch.nhat.dot(v);
+      const double normal_force = -stiffness * (touch.distance + dt * approach);
+      if (normal_force <= 0.0) continue;
+      const double slip = (v - approach * touch.nhat).norm();
+      const double rub =
+          friction_ * normal_force / std::max(slip, kStickingSpeed);
+      // The force on the object is (stiffness dt - rub) n n.v + rub v - f n.
+      Twist line;
+      line << touch.nhat, touch.arm.cross(touch.nhat);
+      M.noalias() += ((stiffness * dt - rub) * line) * line.transpose();
+      w -= (stiffness * touch.distance) * line;
+      sum += rub;
+      first += rub * touch.arm;
+      second.noalias() += (rub * touch.arm) * touch.arm.transpose();
+    }
+    M.topLeftCorner<3, 3>().diagonal().array() += sum;
+    M.bottomLeftCorner<3, 3>() += MakeCross(first);
+    M.topRightCorner<3, 3>() -= MakeCross(first);
+    M.bottomRightCorner<3, 3>() -= second;
+    M.bottomRightCorner<3, 3>().diagonal().array() += second.trace();
+    A_.topLeftCorner<6, 6>() += M;
+    b_.head<6>() -= w;
+    for (const int k : movers) {
+      const Twist& of_k = twists_[static_cast<size_t>(k)];
+      const Twist M_k = M * of_k;
+      A_.block<1, 6>(6 + k, 0) -= M_k.transpose();
+      b_[6 + k] += w.dot(of_k);
       for (const int other : movers) {
         if (other > k) break;
-        A_(6 + k, 6 + other) +=
-            W_column.dot(CalcColumn(touch, static_cast<size_t>(other)));
+        A_(6 + k, 6 + other) += M_k.dot(twists_[static_cast<size_t>(other)]);
       }
     }
   }
@@ -396,11 +447,13 @@ class ClosingRun {
     for (Watch& watch : watches_) watch.travel += moved;
   }
 
-  bool IsCalm() const {
+  // Of the object's points, at most, m/s.
+  double CalcObjectSpeed() const {
     return state_.velocity.head<3>().norm() +
-               solid_.mass().max_radius * state_.velocity.segment<3>(3).norm() <
-           kCalmSpeed;
+           solid_.mass().max_radius * state_.velocity.segment<3>(3).norm();
   }
+
+  bool IsCalm() const { return CalcObjectSpeed() < kCalmSpeed; }
 
   // How far the object is from where it was, and whether that is too far.
   bool IsLost(const State& start, double& shift, double& turn) const {
@@ -421,10 +474,14 @@ class ClosingRun {
       push[i / 2] = i % 2 == 0 ? parameters_.push : -parameters_.push;
       double shift = 0.0;
       double turn = 0.0;
-      for (double t = 0.0; t < parameters_.push_seconds;
+      double rest = 0.0;
+      for (double t = 0.0;
+           t < parameters_.push_seconds && rest < parameters_.settle_seconds;
            t += parameters_.time_step) {
         Step(std::min(1.0, t / kRampSeconds) * push);
         if (IsLost(settled, shift, turn)) return false;
+        rest =
+            t < kRampSeconds || !IsCalm() ? 0.0 : rest + parameters_.time_step;
       }
     }
     return true;
@@ -440,11 +497,12 @@ class ClosingRun {
   const RigidTransform X_WH_;
   State state_;
   std::vector<bool> blocked_;
+  std::vector<double> speeds_;  // Of the motors, 0 when blocked.
   std::vector<Watch> watches_;
   std::vector<Touch> touches_;
+  std::vector<Contacts> contacts_;
   std::vector<RigidTransform> X_WL_;
-  std::vector<Eigen::Vector3d> p_WJ_, axis_W_;
-  std::vector<char> slides_;
+  std::vector<Twist> twists_;  // Of the closing joints, about p_WC.
   Eigen::MatrixXd A0_, A_;
   Eigen::VectorXd b0_, b_, x_;
   Eigen::LLT<Eigen::MatrixXd> solver_;  // Reads the lower half.

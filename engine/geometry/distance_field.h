@@ -41,19 +41,20 @@ class DistanceField {
       return Eigen::Vector3d::Zero();
     }
     const auto [v, t] = FindCell(u);
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    for (int c = 0; c < 8; ++c) {
-      const int x = c & 1;
-      const int y = (c >> 1) & 1;
-      const int z = c >> 2;
-      const double value = v[x + stride_y_ * y + stride_z_ * z];
-      const double wx = x == 1 ? t[0] : 1.0 - t[0];
-      const double wy = y == 1 ? t[1] : 1.0 - t[1];
-      const double wz = z == 1 ? t[2] : 1.0 - t[2];
-      gradient += value * Eigen::Vector3d((x == 1 ? 1.0 : -1.0) * wy * wz,
-                                          (y == 1 ? 1.0 : -1.0) * wx * wz,
-                                          (z == 1 ? 1.0 : -1.0) * wx * wy);
-    }
+    // Of a layer: the slopes along x and y, and the value.
+    const auto slope = [&t = t, y = stride_y_](const float* slice) {
+      const float* row = slice + y;
+      const float dx = slice[1] - slice[0];
+      const float row_dx = row[1] - row[0];
+      const float value = slice[0] + t[0] * dx;
+      const float dy = row[0] + t[0] * row_dx - value;
+      return Eigen::Vector3f(dx + t[1] * (row_dx - dx), dy, value + t[1] * dy);
+    };
+    const Eigen::Vector3f low = slope(v);
+    const Eigen::Vector3f high = slope(v + stride_z_);
+    const Eigen::Vector3d gradient(low[0] + t[2] * (high[0] - low[0]),
+                                   low[1] + t[2] * (high[1] - low[1]),
+                                   high[2] - low[2]);
     return inverse_cell_ * gradient;
   }
 

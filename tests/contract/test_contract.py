@@ -412,8 +412,8 @@ def test_stored_grasps_can_be_queried(contract, world, answer):
 
 def test_what_the_simulator_found_is_kept_and_can_be_asked_for(
         contract, world, binary, server):
-    space = {"grasp_space": world["space"]["id"]}
-    best = contract.call("queryGrasps", 200, query={**space, "limit": 2})
+    learned = {"object": world["example"]["id"], "stage": "learned"}
+    best = contract.call("queryGrasps", 200, query={**learned, "limit": 2})
     assert [g["quality"]["physical"] for g in best["items"]] == [None, None]
     told = json.loads(subprocess.run(
         [binary, "verify", "--db", server.database, "--stage", "learned",
@@ -426,7 +426,7 @@ def test_what_the_simulator_found_is_kept_and_can_be_asked_for(
         grasp = contract.call("getGrasp", 200, path={"id": grasp_id})
         assert grasp["quality"]["physical"] == physical
     held = contract.call("queryGrasps", 200,
-                         query={**space, "verified": "physical"})
+                         query={**learned, "verified": "physical"})
     assert ({g["id"] for g in held["items"]} ==
             {grasp_id for grasp_id, value in found.items() if value == 1})
 

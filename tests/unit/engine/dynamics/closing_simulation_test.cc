@@ -16,11 +16,12 @@ class Pinch : public testing::Test {
  protected:
   ClosingOutcome Run(const HoldParameters& parameters,
                      double friction = kFriction,
-                     const Eigen::Vector3d& shift_H = {0, 0, 0}) const {
+                     const Eigen::Vector3d& shift_H = {0, 0, 0},
+                     double q_open = 0.0) const {
     return ClosingSimulation(gripper_, box_, parameters, MotorParameters())
         .Run({Eigen::Matrix3d::Identity(),
               Eigen::Vector3d(0, 0, -0.07) + shift_H},
-             Eigen::Vector2d::Zero(), friction);
+             Eigen::Vector2d::Constant(q_open), friction);
   }
 
   const HandShape gripper_{workshop::MakeTwoJawGripper()};
@@ -77,6 +78,16 @@ TEST_F(Pinch, SettlesTheSameEachTimeAndAlikeAtHalfTheStep) {
   fine.time_step = 0.5 * HoldParameters().time_step;
   EXPECT_NEAR(Run(fine, kFriction, {0.002, 0.001, 0}).shift, first.shift,
               0.0003);
+}
+
+TEST_F(Pinch, HowFarTheJawsComeFromDoesNotMatter) {
+  const ClosingOutcome far =
+      Run(HoldParameters(), kFriction, {0.004, 0.001, 0});
+  const ClosingOutcome near =
+      Run(HoldParameters(), kFriction, {0.004, 0.001, 0}, 0.01);
+  EXPECT_TRUE(far.held);
+  EXPECT_NEAR(far.shift, near.shift, 1e-4);
+  EXPECT_NEAR(far.turn, near.turn, 1e-3);
 }
 
 // The Barrett hand around a cylinder that stands along z.
