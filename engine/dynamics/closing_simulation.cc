@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "engine/dynamics/touch_finder.h"
+
 namespace graspdb {
 namespace {
 
@@ -15,11 +17,9 @@ constexpr double kDampingSeconds = 0.002;  // Damping over stiffness.
 constexpr double kSlideLength = 0.1;  // m per rad.
 constexpr double kLeastLever = 0.01;  // Of a link without a shape, m.
 // Probes of the links that may touch the surface within a step are those as
-// near as a finger moves in it, and a little farther; those within this of them
-// are looked at until something has moved so far, m.
+// near as a finger moves in it, a little farther, and this, m, farther.
 constexpr double kMargin = 1.2;
 constexpr double kSkin = 3e-5;
-constexpr double kWatched = 0.003;
 // Below this speed, m/s, what rubs is taken to stick.
 constexpr double kStickingSpeed = 1e-4;
 // Passes in which the contacts of a step find out whether they press and slip.
@@ -99,7 +99,8 @@ class ClosingRun {
         joints_(simulation.joints_),
         size_(6 + static_cast<Eigen::Index>(joints_.size())),
         friction_(friction),
-        X_WH_(X_WH) {
+        X_WH_(X_WH),
+        finder_(hand_, solid_, simulation.near_) {
     state_.q = q;
     state_.p_WC = solid_.mass().p_McCM;
     state_.velocity = Eigen::VectorXd::Zero(size_);
@@ -110,7 +111,6 @@ class ClosingRun {
     for (size_t k = 0; k < joints_.size(); ++k) {
       state_.motors[static_cast<Eigen::Index>(k)] = q[joints_[k].joint];
     }
-    watches_.resize(static_cast<size_t>(hand_.model().num_links()));
   }
 
   ClosingOutcome Run(Push push) {
@@ -163,19 +163,6 @@ class ClosingRun {
     size_t end;
   };
 
-  struct Probe {
-    Eigen::Vector3d p_L;
-    double wake;  // The link's travel at which it may be near.
-  };
-
-  // The probes of a link that may come near, up to some travel of the link: how
-  // far any of its points has moved relative to the object, at most, m.
-  struct Watch {
-    std::vector<Probe> probes;
-    double travel{0.0};
-    double until{0.0};
-  };
-
   RigidTransform CalcObjectPose() const {
     return {state_.R_WO, state_.p_WC - state_.R_WO * solid_.mass().p_McCM};
   }
@@ -209,8 +196,7 @@ class ClosingRun {
       state_.motors[static_cast<Eigen::Index>(k)] += seconds * speeds_[k];
     }
     for (int link = 0; link < hand_.model().num_links(); ++link) {
-      watches_[static_cast<size_t>(link)].travel +=
-          seconds * CalcTurningSpeed(link);
+      finder_.Move(link, seconds * CalcTurningSpeed(link));
     }
     return seconds;
   }
@@ -260,51 +246,28 @@ class ClosingRun {
     return turns;
   }
 
-  // Links and object have moved on relative to each other. A probe needs to be
-  // looked at again only when its link may have come as near as it was seen to
-  // be away.
+  // Links and object have moved on relative to each other.
   void FindTouches() {
     X_WL_ = CalcLinkPoses(hand_.model(), state_.q);
     const RigidTransform X_OW = CalcObjectPose().Inverse();
-    const DistanceField& field = solid_.field();
     const double object_speed = CalcObjectSpeed();
     touches_.clear();
     contacts_.clear();
     for (int link = 0; link < hand_.model().num_links(); ++link) {
-      const auto l = static_cast<size_t>(link);
-      X_WL_[l] = X_WH_ * X_WL_[l];
+      RigidTransform& X_WL = X_WL_[static_cast<size_t>(link)];
+      X_WL = X_WH_ * X_WL;
       if (!hand_.link(link)) continue;
-      const RigidTransform X_OL = X_OW * X_WL_[l];
       const double near =
           std::min(simulation_.near_,
                    kSkin + kMargin * parameters_.time_step *
                                (object_speed + CalcTurningSpeed(link)));
-      Watch& watch = watches_[l];
-      if (watch.travel >= watch.until) {
-        watch.until = watch.travel + kWatched;
-        watch.probes.clear();
-        hand_.link(link)->tree.VisitNear(
-            [&](const Eigen::Vector3d& p_L) { return field.Calc(X_OL * p_L); },
-            kWatched + simulation_.near_,
-            [&](const Eigen::Vector3d& p_L) {
-              watch.probes.push_back({p_L, watch.travel});
-            });
-      }
       const size_t begin = touches_.size();
-      for (Probe& probe : watch.probes) {
-        if (watch.travel < probe.wake) continue;
-        const Eigen::Vector3d p_O = X_OL * probe.p_L;
-        const double distance = field.Calc(p_O);
-        if (distance > near) {
-          probe.wake = watch.travel + distance - near;
-          continue;
-        }
-        const Eigen::Vector3d gradient = field.CalcGradient(p_O);
-        const double norm = gradient.norm();
-        if (!(norm > 0.0)) continue;
-        touches_.push_back({distance, state_.R_WO * (gradient / norm),
-                            X_WL_[l] * probe.p_L - state_.p_WC});
-      }
+      finder_.Visit(link, X_OW * X_WL, near,
+                    [&](const Eigen::Vector3d& p_L, double distance,
+                        const Eigen::Vector3d& nhat_O) {
+                      touches_.push_back({distance, state_.R_WO * nhat_O,
+                                          X_WL * p_L - state_.p_WC});
+                    });
       if (touches_.size() > begin) {
         contacts_.push_back({link, begin, touches_.size()});
       }
@@ -429,8 +392,8 @@ class ClosingRun {
       state_.q[j] = std::clamp(before + dt * speed, Lower(j), Upper(j));
       if (state_.q[j] != before + dt * speed) speed = 0.0;
       for (int link = 0; link < hand_.model().num_links(); ++link) {
-        watches_[static_cast<size_t>(link)].travel +=
-            std::abs(state_.q[j] - before) * hand_.motion_bound(link, j);
+        finder_.Move(
+            link, std::abs(state_.q[j] - before) * hand_.motion_bound(link, j));
       }
     }
     const Eigen::Vector3d w = dt * state_.velocity.segment<3>(3);
@@ -441,10 +404,11 @@ class ClosingRun {
     }
     const Eigen::Vector3d step = dt * state_.velocity.head<3>();
     state_.p_WC += step;
-    // As far as the object reaches: what is watched is that near to it.
-    const double moved = step.norm() + angle * (solid_.mass().max_radius +
-                                                kWatched + simulation_.near_);
-    for (Watch& watch : watches_) watch.travel += moved;
+    const double moved =
+        step.norm() + angle * (solid_.mass().max_radius + finder_.reach());
+    for (int link = 0; link < hand_.model().num_links(); ++link) {
+      finder_.Move(link, moved);
+    }
   }
 
   // Of the object's points, at most, m/s.
@@ -469,7 +433,7 @@ class ClosingRun {
     for (int i = 0; i < 6; ++i) {
       if (which != Push::kAll && which != static_cast<Push>(i)) continue;
       state_ = settled;
-      for (Watch& watch : watches_) watch.until = 0.0;
+      finder_.Forget();
       Eigen::Vector3d push = Eigen::Vector3d::Zero();
       push[i / 2] = i % 2 == 0 ? parameters_.push : -parameters_.push;
       double shift = 0.0;
@@ -498,7 +462,7 @@ class ClosingRun {
   State state_;
   std::vector<bool> blocked_;
   std::vector<double> speeds_;  // Of the motors, 0 when blocked.
-  std::vector<Watch> watches_;
+  TouchFinder finder_;
   std::vector<Touch> touches_;
   std::vector<Contacts> contacts_;
   std::vector<RigidTransform> X_WL_;

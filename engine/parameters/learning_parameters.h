@@ -39,7 +39,7 @@ struct ActiveLearningParameters {
 /** Sec. IV, grasp space by particle swarm optimisation. */
 struct SwarmParameters {
   int particles{200};
-  int iterations{240};
+  int iterations{400};
   double acceleration{2.05};
   double max_step{0.02};
   double max_turn{0.35};
