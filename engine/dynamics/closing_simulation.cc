@@ -17,7 +17,7 @@ constexpr double kDampingSeconds = 0.002;  // Damping over stiffness.
 constexpr double kSlideLength = 0.1;  // m per rad.
 constexpr double kLeastLever = 0.01;  // Of a link without a shape, m.
 // Probes of the links that may touch the surface within a step are those as
-// near as a finger moves in it, a little farther, and this, m, farther.
+// near as what turns and the object move in it, times a margin, plus a skin, m.
 constexpr double kMargin = 1.2;
 constexpr double kSkin = 3e-5;
 // Below this speed, m/s, what rubs is taken to stick.

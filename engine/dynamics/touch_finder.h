@@ -38,8 +38,9 @@ class TouchFinder {
   }
 
   /** Calls visit(p_L, distance, nhat_O) for each probe of a link, which has a
-   shape, not farther than `near`, m: where it is on the link, how far from the
-   surface, negative inside, and which way is out of the solid. */
+   shape, not farther than `near`, m, at most the constructor's: where it is on
+   the link, how far from the surface, negative inside, and which way is out of
+   the solid. */
   template <class Visitor>
   void Visit(int link, const RigidTransform& X_OL, double near,
              const Visitor& visit) {
