@@ -23,13 +23,6 @@
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_placement.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Edge_length_cost.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_cost.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_placement.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Midpoint_placement.h>
-#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/alpha_wrap_3.h>
 #include <fmt/core.h>
 
@@ -40,7 +33,6 @@ namespace graspdb {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
-namespace sms = CGAL::Surface_mesh_simplification;
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
@@ -68,9 +60,6 @@ constexpr std::size_t kMostShells = 100;
 // The cubes of the lengths, in edges, of all holes that are filled in the best
 // way.
 constexpr double kMostHoleWork = 1.5e7;
-// Above this, the shortest edges are merged first, down to half of it: half the
-// time of the better way for hardly visible edges.
-constexpr int kManyTriangles = 100'000;
 // Rounds of cutting crossing faces out, each with one more ring around them.
 constexpr int kCuttingRounds = 5;
 
@@ -464,19 +453,6 @@ Result<RepairedMesh> Repair(const TriangleMesh& mesh, RepairLog log) {
   return RepairedMesh{ToTriangleMesh(mended->solid), mended->log.sentences()};
 }
 
-// Collapses the cheapest edges until so many triangles are left, without
-// turning any face over.
-template <typename Cost, typename Placement>
-void CollapseEdges(SurfaceMesh& surface, int max_triangles, const Cost& cost,
-                   const Placement& placement) {
-  const std::size_t edges = static_cast<std::size_t>(max_triangles) / 2 * 3;
-  sms::edge_collapse(
-      surface, sms::Count_stop_predicate<SurfaceMesh>(edges + 1),
-      CGAL::parameters::get_cost(cost).get_placement(
-          sms::Bounded_normal_change_placement<Placement>(placement)));
-  surface.collect_garbage();
-}
-
 }  // namespace
 
 Result<RepairedMesh> RepairMesh(const TriangleMesh& soup) {
@@ -491,33 +467,6 @@ Result<RepairedMesh> RepairMesh(const TriangleMesh& soup) {
   } catch (const std::exception&) {
     return MakeError("no closed solid could be made of the mesh");
   }
-}
-
-Result<TriangleMesh> Decimate(const TriangleMesh& mesh, int max_triangles) {
-  GRASPDB_EXPECTS(max_triangles >= 4);
-  if (mesh.num_triangles() <= max_triangles) return mesh;
-  GRASPDB_EXPECTS(IsClosed(mesh));
-  SurfaceMesh surface = ToSurfaceMesh(ToSoup(MakeSoup(mesh)));
-  try {
-    if (mesh.num_triangles() > kManyTriangles) {
-      CollapseEdges(surface, std::max(max_triangles, kManyTriangles / 2),
-                    sms::Edge_length_cost<SurfaceMesh>(),
-                    sms::Midpoint_placement<SurfaceMesh>());
-    }
-    CollapseEdges(surface, max_triangles,
-                  sms::LindstromTurk_cost<SurfaceMesh>(),
-                  sms::LindstromTurk_placement<SurfaceMesh>());
-    SurfaceMesh mended = surface;
-    if (CutSelfIntersections(mended)) surface = std::move(mended);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    return Error{ErrorCode::kInternal, "the mesh could not be simplified"};
-  }
-  if (!CGAL::is_closed(surface)) {
-    return Error{ErrorCode::kInternal, "the simplified mesh is not closed"};
-  }
-  return ToTriangleMesh(surface);
 }
 
 }  // namespace graspdb

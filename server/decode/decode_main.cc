@@ -16,6 +16,7 @@
 
 #include "engine/admission/graspable_size.h"
 #include "engine/admission/mesh_reader.h"
+#include "engine/admission/mesh_decimation.h"
 #include "engine/admission/mesh_repair.h"
 #include "engine/admission/point_cloud_reader.h"
 #include "engine/admission/surface_reconstruction.h"

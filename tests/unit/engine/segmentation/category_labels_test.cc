@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/admission/mesh_repair.h"
+#include "engine/admission/mesh_decimation.h"
 #include "engine/base/random.h"
 #include "engine/geometry/subdivision.h"
 #include "engine/geometry/surface_index.h"
