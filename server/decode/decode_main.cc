@@ -15,8 +15,8 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/admission/graspable_size.h"
-#include "engine/admission/mesh_reader.h"
 #include "engine/admission/mesh_decimation.h"
+#include "engine/admission/mesh_reader.h"
 #include "engine/admission/mesh_repair.h"
 #include "engine/admission/point_cloud_reader.h"
 #include "engine/admission/surface_reconstruction.h"
