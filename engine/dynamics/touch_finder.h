@@ -12,14 +12,15 @@ namespace graspdb {
 
 /** Where the links of a hand touch a solid, or soon will, while both move on a
  little at a time: a probe of a link is looked at again only when the link may
- have come as near as the probe was seen to be away. */
+ have come as near as the probe was seen to be away. A copy remembers what was
+ seen so far: both may be put back to where they were then. */
 class TouchFinder {
  public:
   /** Keeps references to hand and solid. @param near  Nothing farther than
    this, m, is ever asked for. */
   TouchFinder(const HandShape& hand, const Solid& solid, double near)
-      : hand_(hand),
-        field_(solid.field()),
+      : hand_(&hand),
+        field_(&solid.field()),
         near_(near),
         watches_(static_cast<size_t>(hand.model().num_links())) {}
 
@@ -30,11 +31,6 @@ class TouchFinder {
    than `distance`, m, relative to it. */
   void Move(int link, double distance) {
     watches_[static_cast<size_t>(link)].travel += distance;
-  }
-
-  /** Links and solid may be anywhere now. */
-  void Forget() {
-    for (Watch& watch : watches_) watch.until = watch.travel;
   }
 
   /** Calls visit(p_L, distance, nhat_O) for each probe of a link, which has a
@@ -49,12 +45,12 @@ class TouchFinder {
     for (Probe& probe : watch.probes) {
       if (watch.travel < probe.wake) continue;
       const Eigen::Vector3d p_O = X_OL * probe.p_L;
-      const double distance = field_.Calc(p_O);
+      const double distance = field_->Calc(p_O);
       if (distance > near) {
         probe.wake = watch.travel + distance - near_;
         continue;
       }
-      const Eigen::Vector3d gradient = field_.CalcGradient(p_O);
+      const Eigen::Vector3d gradient = field_->CalcGradient(p_O);
       const double norm = gradient.norm();
       if (norm > 0.0) visit(probe.p_L, distance, gradient / norm);
     }
@@ -78,9 +74,9 @@ class TouchFinder {
 
   void Fill(int link, const RigidTransform& X_OL, Watch& watch) const;
 
-  const HandShape& hand_;
-  const DistanceField& field_;
-  const double near_;
+  const HandShape* hand_;
+  const DistanceField* field_;
+  double near_;
   std::vector<Watch> watches_;
 };
 

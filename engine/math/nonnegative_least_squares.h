@@ -12,8 +12,12 @@ class NonnegativeLeastSquares {
   /** @param A  m x n. */
   explicit NonnegativeLeastSquares(const Eigen::MatrixXd& A);
 
-  /** The x that is found, n. @pre b has m rows. */
+  /** The x that is found, n. @param start  Where the search sets out, n and not
+   negative: what another b's was is near; zero by default. @pre b has m rows.
+ */
   Eigen::VectorXd Solve(const Eigen::VectorXd& b) const;
+  Eigen::VectorXd Solve(const Eigen::VectorXd& b,
+                        const Eigen::VectorXd& start) const;
 
  private:
   Eigen::MatrixXd A_;

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
 
-#include "engine/base/contract.h"
 #include "engine/base/random.h"
 
 namespace graspdb {
@@ -21,6 +19,10 @@ constexpr double kPlaneTolerance = 1e-11;
 // More than the hull of a hundred wrenches has; a polytope that grows on is
 // broken by rounding.
 constexpr size_t kMaxFacets = 200000;
+// A facet's normal is taken from its two neighbours' as long as their sum is no
+// shorter than this, nor than this share of its terms; else from its vertices.
+constexpr double kShortSum = 1e-3;
+constexpr double kCancellation = 0.1;
 // Spread of the wrenches below which they span no volume.
 constexpr double kFlatTolerance = 1e-8;
 
@@ -31,6 +33,12 @@ struct Facet {
   double offset{0.0};                // normal · x = offset on the plane.
   bool alive{true};
   bool visited{false};
+};
+
+// Where a facet meets its neighbour opposite one of its vertices.
+struct Ridge {
+  int facet;
+  int slot;
 };
 
 // The unit vector orthogonal to five rows, by elimination with full pivoting;
@@ -77,9 +85,8 @@ std::optional<Wrench> CalcOrthogonal(
 // An inner approximation of the hull that grows one point at a time.
 class ExpandingPolytope {
  public:
-  explicit ExpandingPolytope(const Wrenches& points) : points_(points) {
-    GRASPDB_EXPECTS(points.cols() < 1 << 16);
-  }
+  explicit ExpandingPolytope(const Wrenches& points)
+      : points_(points), reach_(points.cols()) {}
 
   // False when the points do not span six dimensions.
   bool Start() {
@@ -96,7 +103,8 @@ class ExpandingPolytope {
         facet.neighbours[slot] = i;  // Facet i leaves out vertex i.
         ++slot;
       }
-      if (!AddFacet(facet)) return false;
+      if (!SpanPlane(facet)) return false;
+      AddFacet(facet);
     }
     return true;
   }
@@ -107,8 +115,12 @@ class ExpandingPolytope {
     while (true) {
       const int nearest = PopNearest();
       if (nearest < 0) return std::nullopt;
-      const int support = FindSupport(nearest);
-      if (support < 0) return facets_[nearest].offset;
+      const int support = FindSupport(facets_[nearest]);
+      if (support < 0) {
+        // Free of what rounding has gathered on the way.
+        if (!SpanPlane(facets_[nearest])) return std::nullopt;
+        return facets_[nearest].offset;
+      }
       if (facets_.size() > kMaxFacets) return std::nullopt;
       if (!AddPoint(support, nearest)) return std::nullopt;
     }
@@ -118,7 +130,7 @@ class ExpandingPolytope {
   std::optional<double> ExpandFully() {
     for (size_t f = 0; f < facets_.size(); ++f) {
       while (facets_[f].alive) {
-        const int support = FindSupport(static_cast<int>(f));
+        const int support = FindSupport(facets_[f]);
         if (support < 0) break;
         if (facets_.size() > kMaxFacets) return std::nullopt;
         if (!AddPoint(support, static_cast<int>(f))) return std::nullopt;
@@ -153,7 +165,8 @@ class ExpandingPolytope {
     return simplex;
   }
 
-  bool AddFacet(Facet facet) {
+  // The facet's plane from its vertices; false when they do not span one.
+  bool SpanPlane(Facet& facet) const {
     Eigen::Matrix<double, kDim - 1, kDim> edges;
     const Wrench base = points_.col(facet.vertices[0]);
     for (int k = 1; k < kDim; ++k) {
@@ -167,10 +180,30 @@ class ExpandingPolytope {
       facet.normal = -facet.normal;
       facet.offset = -facet.offset;
     }
-    const int index = static_cast<int>(facets_.size());
-    facets_.push_back(facet);
-    queue_.emplace(facet.offset, index);
     return true;
+  }
+
+  // The plane through a point and the ridge where a facet that it sees meets
+  // one that it does not: of all planes through that ridge, which are sums of
+  // the two, the one that holds the point.
+  bool CalcPlane(int point, const Facet& seen, const Facet& beyond,
+                 Facet& facet) const {
+    const Wrench p = points_.col(point);
+    const double above = seen.normal.dot(p) - seen.offset;
+    const double below = beyond.offset - beyond.normal.dot(p);
+    const Wrench sum = above * beyond.normal + below * seen.normal;
+    const double length = sum.norm();
+    if (length < kShortSum || length < kCancellation * (above + below)) {
+      return SpanPlane(facet);
+    }
+    facet.normal = sum / length;
+    facet.offset = (above * beyond.offset + below * seen.offset) / length;
+    return true;
+  }
+
+  void AddFacet(const Facet& facet) {
+    queue_.emplace(facet.offset, static_cast<int>(facets_.size()));
+    facets_.push_back(facet);
   }
 
   int PopNearest() {
@@ -183,11 +216,11 @@ class ExpandingPolytope {
   }
 
   // The point farthest beyond the facet, or -1.
-  int FindSupport(int f) const {
+  int FindSupport(const Facet& facet) {
+    reach_.noalias() = points_.transpose() * facet.normal;
     int support = 0;
-    const double reach =
-        (facets_[f].normal.transpose() * points_).maxCoeff(&support);
-    return reach > facets_[f].offset + 10 * kPlaneTolerance ? support : -1;
+    const double reach = reach_.maxCoeff(&support);
+    return reach > facet.offset + 10 * kPlaneTolerance ? support : -1;
   }
 
   bool Sees(int point, const Facet& facet) const {
@@ -195,77 +228,80 @@ class ExpandingPolytope {
            facet.offset - kPlaneTolerance;
   }
 
-  // Replaces the facets that the point sees by a cone over their horizon.
+  // Replaces the facets that the point sees by a cone over their horizon. False
+  // when rounding has broken the polytope.
   bool AddPoint(int point, int first_visible) {
-    std::vector<int> visible{first_visible};
+    visible_.assign(1, first_visible);
     facets_[first_visible].visited = true;
-    std::vector<std::pair<int, int>> horizon;  // Visible facet, slot.
-    for (size_t i = 0; i < visible.size(); ++i) {
+    horizon_.clear();
+    for (size_t i = 0; i < visible_.size(); ++i) {
       for (int k = 0; k < kDim; ++k) {
-        const int next = facets_[visible[i]].neighbours[k];
+        const int next = facets_[visible_[i]].neighbours[k];
         if (facets_[next].visited) continue;
         if (Sees(point, facets_[next])) {
           facets_[next].visited = true;
-          visible.push_back(next);
+          visible_.push_back(next);
         } else {
-          horizon.emplace_back(visible[i], k);
+          horizon_.push_back({visible_[i], k});
         }
       }
     }
-    // One facet per ridge of the horizon; new ones meet along ridges that
-    // leave out one vertex of theirs.
-    struct OpenRidge {
-      uint64_t vertices;  // Sixteen bits each, ascending.
-      int facet;
-      int slot;
-    };
-    std::vector<OpenRidge> open;
-    for (const auto& [seen, slot] : horizon) {
-      const int beyond = facets_[seen].neighbours[slot];
-      Facet facet;
-      facet.vertices = facets_[seen].vertices;
-      facet.vertices[slot] = point;
-      facet.neighbours.fill(-1);
-      facet.neighbours[slot] = beyond;
+    // One facet per ridge of the horizon, which takes the place of the one
+    // beyond it as the neighbour of the one that is seen.
+    const auto first_new = facets_.size();
+    for (const Ridge& ridge : horizon_) {
+      Facet& seen = facets_[ridge.facet];
+      const int beyond = seen.neighbours[ridge.slot];
       const int index = static_cast<int>(facets_.size());
-      if (!AddFacet(facet)) return false;
+      Facet facet;
+      facet.vertices = seen.vertices;
+      facet.vertices[ridge.slot] = point;
+      facet.neighbours[ridge.slot] = beyond;
+      if (!CalcPlane(point, seen, facets_[beyond], facet)) return false;
       std::array<int, kDim>& back = facets_[beyond].neighbours;
-      *std::find(back.begin(), back.end(), seen) = index;
+      *std::find(back.begin(), back.end(), ridge.facet) = index;
+      seen.neighbours[ridge.slot] = index;
+      AddFacet(facet);
+    }
+    for (size_t i = 0; i < horizon_.size(); ++i) {
+      Facet& facet = facets_[first_new + i];
       for (int k = 0; k < kDim; ++k) {
-        if (k == slot) continue;
-        std::array<int, kDim - 2> vertices;
-        int n = 0;
-        for (int i = 0; i < kDim; ++i) {
-          if (i != k && i != slot) vertices[n++] = facet.vertices[i];
-        }
-        std::sort(vertices.begin(), vertices.end());
-        uint64_t key = 0;
-        for (const int v : vertices) key = key << 16 | static_cast<uint64_t>(v);
-        open.push_back({key, index, k});
+        if (k == horizon_[i].slot) continue;
+        facet.neighbours[k] = FindNeighbour(horizon_[i], k);
       }
     }
-    // A ridge's two facets: the order of equal keys does not matter but must
-    // not depend on the sort.
-    std::sort(open.begin(), open.end(),
-              [](const OpenRidge& a, const OpenRidge& b) {
-                return a.vertices != b.vertices ? a.vertices < b.vertices
-                                                : a.facet < b.facet;
-              });
-    if (open.size() % 2 != 0) return false;
-    for (size_t i = 0; i < open.size(); i += 2) {
-      const OpenRidge& a = open[i];
-      const OpenRidge& b = open[i + 1];
-      if (a.vertices != b.vertices) return false;
-      facets_[a.facet].neighbours[a.slot] = b.facet;
-      facets_[b.facet].neighbours[b.slot] = a.facet;
-    }
-    for (const int f : visible) facets_[f].alive = false;
+    for (const int f : visible_) facets_[f].alive = false;
     return true;
+  }
+
+  // The new facet that shares with the one over a ridge of the horizon all but
+  // the vertex in slot k: around what they share, through facets that are seen,
+  // to where the horizon is met again.
+  int FindNeighbour(const Ridge& ridge, int k) const {
+    int from = ridge.facet;
+    int left_out = facets_[from].vertices[ridge.slot];
+    int next = facets_[from].neighbours[k];
+    while (facets_[next].visited) {
+      const Facet& facet = facets_[next];
+      const auto slot_of = [](const std::array<int, kDim>& all, int one) {
+        return std::find(all.begin(), all.end(), one) - all.begin();
+      };
+      const auto entered = slot_of(facet.neighbours, from);
+      const auto left = slot_of(facet.vertices, left_out);
+      from = next;
+      left_out = facet.vertices[entered];
+      next = facet.neighbours[left];
+    }
+    return next;
   }
 
   const Wrenches& points_;
   Wrench inside_;
   std::vector<Facet> facets_;
+  // Between the calls only to keep their memory.
+  Eigen::VectorXd reach_;
+  std::vector<int> visible_;
+  std::vector<Ridge> horizon_;
   std::priority_queue<std::pair<double, int>,
                       std::vector<std::pair<double, int>>, std::greater<>>
       queue_;

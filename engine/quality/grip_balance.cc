@@ -96,13 +96,16 @@ double CalcGripResidual(const HandShape& hand, const RigidTransform& X_OH,
     A(6 + m + r, n + m + r) = 1.0;
   }
   const NonnegativeLeastSquares problem(A);
+  // Pushes change little: each search sets out from the last one's forces.
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(A.cols());
   const auto calc_residual = [&](double most) {
     for (Eigen::Index r = 0; r < m; ++r) {
       b[6 + m + r] =
           (joints[static_cast<size_t>(r)].locks ? motors.holding_force : most) -
           parameters.least_force;
     }
-    return (A * problem.Solve(b) - b).norm();
+    forces = problem.Solve(b, forces);
+    return (A * forces - b).norm();
   };
   double worst = calc_residual(motors.closing_force);
   for (int i = 0; i < 6 && worst <= enough; ++i) {

@@ -35,7 +35,11 @@ TEST(NonnegativeLeastSquares, MeetsTheOptimalityConditionsOnRandomProblems) {
     for (auto& a : A.reshaped()) a = random.NextUniform(-1.0, 1.0);
     for (auto& one : b) one = random.NextUniform(-5.0, 5.0);
     if (trial % 2 == 0) A = A.cwiseAbs();  // Some b are then out of reach.
-    const Eigen::VectorXd x = NonnegativeLeastSquares(A).Solve(b);
+    const NonnegativeLeastSquares problem(A);
+    // From nothing, and from what solves another problem.
+    const Eigen::VectorXd other = problem.Solve(b.reverse());
+    const Eigen::VectorXd x =
+        trial % 3 == 0 ? problem.Solve(b, other) : problem.Solve(b);
     const Eigen::VectorXd gain = A.transpose() * (b - A * x);
     EXPECT_GE(x.minCoeff(), 0.0);
     for (int i = 0; i < 30; ++i) {
