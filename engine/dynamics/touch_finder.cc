@@ -7,9 +7,7 @@ void TouchFinder::Fill(int link, const RigidTransform& X_OL,
   watch.until = watch.travel + kWatched;
   watch.probes.clear();
   hand_->link(link)->tree.VisitNear(
-      [&](const Eigen::Vector3d& p_L) { return field_->Calc(X_OL * p_L); },
-      reach(),
-      [&](const Eigen::Vector3d& p_L) {
+      PosedField(*field_, X_OL), reach(), [&](const Eigen::Vector3d& p_L) {
         watch.probes.push_back({p_L, watch.travel});
       });
 }

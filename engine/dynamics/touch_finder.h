@@ -42,14 +42,15 @@ class TouchFinder {
              const Visitor& visit) {
     Watch& watch = watches_[static_cast<size_t>(link)];
     if (watch.travel >= watch.until) Fill(link, X_OL, watch);
+    const PosedField field(*field_, X_OL);
     for (Probe& probe : watch.probes) {
       if (watch.travel < probe.wake) continue;
-      const Eigen::Vector3d p_O = X_OL * probe.p_L;
-      const double distance = field_->Calc(p_O);
+      const double distance = field(probe.p_L);
       if (distance > near) {
         probe.wake = watch.travel + distance - near_;
         continue;
       }
+      const Eigen::Vector3d p_O = X_OL * probe.p_L;
       const Eigen::Vector3d gradient = field_->CalcGradient(p_O);
       const double norm = gradient.norm();
       if (norm > 0.0) visit(probe.p_L, distance, gradient / norm);

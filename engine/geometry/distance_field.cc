@@ -11,6 +11,8 @@ namespace {
 
 // Every so many nodes are computed first; the rest only near the surface.
 constexpr int kCoarse = 2;
+// Where single precision puts a point among some hundred cells, in cells.
+constexpr double kRounding = 1e-4;
 
 // @param reach  No point of the surface farther than this matters.
 float CalcSigned(const SurfaceIndex& index_M, const Eigen::Vector3d& p_M,
@@ -31,7 +33,7 @@ DistanceField::DistanceField(const TriangleMesh& mesh_M,
                                Eigen::Vector3d::Constant(2.0 * margin);
   cell_ = size.maxCoeff() / cells;
   inverse_cell_ = 1.0 / cell_;
-  max_error_ = 0.5 * std::sqrt(3.0) * cell_;
+  max_error_ = (0.5 * std::sqrt(3.0) + kRounding) * cell_;
   origin_ = mesh_M.box_min() - Eigen::Vector3d::Constant(margin);
   for (int k = 0; k < 3; ++k) {
     count_[k] = kCoarse * static_cast<int>(

@@ -73,21 +73,15 @@ HandShape::HandShape(std::shared_ptr<const HandModel> model)
 
 double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
                     const Solid& solid, double enough) {
-  const DistanceField& field = solid.field();
-  const auto distance = [&](const Eigen::Vector3d& p_L) {
-    return field.Calc(X_OL * p_L);
-  };
-  return link.tree.CalcLowerBound(distance, enough + field.max_error()) -
-         field.max_error();
+  const double error = solid.field().max_error();
+  return link.tree.CalcLowerBound(PosedField(solid.field(), X_OL),
+                                  enough + error) -
+         error;
 }
 
 double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
                    const Solid& solid, double enough) {
-  return link.tree.EstimateMinimum(
-      [&](const Eigen::Vector3d& p_L) {
-        return solid.field().Calc(X_OL * p_L);
-      },
-      enough);
+  return link.tree.EstimateMinimum(PosedField(solid.field(), X_OL), enough);
 }
 
 bool LinkCollides(const LinkShape& link, const RigidTransform& X_OL,

@@ -48,16 +48,13 @@ class LinkContacts {
  private:
   std::vector<Contact> FindCandidates() const {
     std::vector<Contact> candidates;
-    link_.tree.VisitNear(
-        [this](const Eigen::Vector3d& p_L) {
-          return solid_.field().Calc(X_OL_ * p_L);
-        },
-        parameters_.tolerance + kSlack,
-        [&](const Eigen::Vector3d& p_L) {
-          if (const auto contact = FindContact(X_OL_ * p_L)) {
-            candidates.push_back(*contact);
-          }
-        });
+    link_.tree.VisitNear(PosedField(solid_.field(), X_OL_),
+                         parameters_.tolerance + kSlack,
+                         [&](const Eigen::Vector3d& p_L) {
+                           if (const auto contact = FindContact(X_OL_ * p_L)) {
+                             candidates.push_back(*contact);
+                           }
+                         });
     return candidates;
   }
 

@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kDim = 6;
 // Points this close to a facet's plane count as on it.
-constexpr double kPlaneTolerance = 1e-11;
+constexpr double kPlaneTolerance = 3e-11;
 // More than the hull of a hundred wrenches has; a polytope that grows on is
 // broken by rounding.
 constexpr size_t kMaxFacets = 200000;
-// A facet's normal is taken from its two neighbours' as long as their sum is no
-// shorter than this, nor than this share of its terms; else from its vertices.
-constexpr double kShortSum = 1e-3;
-constexpr double kCancellation = 0.1;
+// What a plane that was spanned by its points may be off at a point of the
+// hull, and what one may be that follows from other planes.
+constexpr double kSpanError = 1e-15;
+constexpr double kMostError = 0.3 * kPlaneTolerance;
 // Spread of the wrenches below which they span no volume.
 constexpr double kFlatTolerance = 1e-8;
 
@@ -30,7 +30,8 @@ struct Facet {
   std::array<int, kDim> vertices;
   std::array<int, kDim> neighbours;  // neighbours[k] lies opposite vertex k.
   Wrench normal;                     // Unit, outward.
-  double offset{0.0};                // normal · x = offset on the plane.
+  double offset{0.0};                // normal · x = offset on the plane …
+  double error{0.0};                 // … but for at most this.
   bool alive{true};
   bool visited{false};
 };
@@ -180,6 +181,7 @@ class ExpandingPolytope {
       facet.normal = -facet.normal;
       facet.offset = -facet.offset;
     }
+    facet.error = kSpanError;
     return true;
   }
 
@@ -193,9 +195,11 @@ class ExpandingPolytope {
     const double below = beyond.offset - beyond.normal.dot(p);
     const Wrench sum = above * beyond.normal + below * seen.normal;
     const double length = sum.norm();
-    if (length < kShortSum || length < kCancellation * (above + below)) {
-      return SpanPlane(facet);
-    }
+    // The planes' own errors, and those of the two distances.
+    const double error = above * beyond.error + below * seen.error +
+                         4.0 * (beyond.error + seen.error + kSpanError);
+    if (error > kMostError * length) return SpanPlane(facet);
+    facet.error = error / length;
     facet.normal = sum / length;
     facet.offset = (above * beyond.offset + below * seen.offset) / length;
     return true;
@@ -268,6 +272,7 @@ class ExpandingPolytope {
       for (int k = 0; k < kDim; ++k) {
         if (k == horizon_[i].slot) continue;
         facet.neighbours[k] = FindNeighbour(horizon_[i], k);
+        if (facet.neighbours[k] < 0) return false;
       }
     }
     for (const int f : visible_) facets_[f].alive = false;
@@ -276,23 +281,27 @@ class ExpandingPolytope {
 
   // The new facet that shares with the one over a ridge of the horizon all but
   // the vertex in slot k: around what they share, through facets that are seen,
-  // to where the horizon is met again.
+  // to where the horizon is met again. -1 when rounding has broken the
+  // polytope.
   int FindNeighbour(const Ridge& ridge, int k) const {
     int from = ridge.facet;
     int left_out = facets_[from].vertices[ridge.slot];
     int next = facets_[from].neighbours[k];
-    while (facets_[next].visited) {
+    for (size_t turn = 0; turn < visible_.size(); ++turn) {
       const Facet& facet = facets_[next];
-      const auto slot_of = [](const std::array<int, kDim>& all, int one) {
-        return std::find(all.begin(), all.end(), one) - all.begin();
-      };
-      const auto entered = slot_of(facet.neighbours, from);
-      const auto left = slot_of(facet.vertices, left_out);
+      if (!facet.visited) return next;
+      const auto entered =
+          std::find(facet.neighbours.begin(), facet.neighbours.end(), from);
+      const auto left =
+          std::find(facet.vertices.begin(), facet.vertices.end(), left_out);
+      if (entered == facet.neighbours.end() || left == facet.vertices.end()) {
+        return -1;
+      }
       from = next;
-      left_out = facet.vertices[entered];
-      next = facet.neighbours[left];
+      left_out = facet.vertices[entered - facet.neighbours.begin()];
+      next = facet.neighbours[left - facet.vertices.begin()];
     }
-    return next;
+    return facets_[next].visited ? -1 : next;
   }
 
   const Wrenches& points_;

@@ -57,5 +57,18 @@ TEST_F(FieldOfABox, FarAwayItIsTheDistanceToTheGrid) {
   EXPECT_GT(far, 0.95);
 }
 
+TEST_F(FieldOfABox, IsTheSameForABodyThatStandsSomewhere) {
+  Random random(53);
+  const double rounding =
+      field_.max_error() - 0.5 * std::sqrt(3.0) * field_.cell_size();
+  for (int i = 0; i < 2000; ++i) {
+    const RigidTransform X_ML{random.NextRotation(),
+                              0.2 * random.NextInUnitBall()};
+    const Eigen::Vector3d p_M = 0.12 * random.NextInUnitBall();
+    EXPECT_NEAR(PosedField(field_, X_ML)(X_ML.Inverse() * p_M),
+                field_.Calc(p_M), rounding);
+  }
+}
+
 }  // namespace
 }  // namespace graspdb

@@ -113,6 +113,35 @@ TEST(WrenchVolume, OfTwoFlatPatchesIsFoundOrGivenUp) {
   EXPECT_GT(CalcEpsilonQuality(wrenches), 0.0);
 }
 
+// Regression: where many wrenches lie in one plane, but for rounding, walking
+// around a ridge did not end.
+TEST(EpsilonQuality, OfTwoFlatPatchesDoesNotDependOnTheLastDigits) {
+  std::vector<Contact> contacts;
+  for (const double x : {-0.02, 0.02}) {
+    for (const double y : {-0.01, 0.01}) {
+      for (const double z : {-0.015, 0.005}) {
+        contacts.push_back(
+            {1, {x, y, z}, {x > 0 ? 1.0 : -1.0, 0.0, 0.0}, 0.0001});
+      }
+    }
+  }
+  MassProperties mass;
+  mass.max_radius = 0.035;
+  const Wrenches wrenches = CalcContactWrenches(contacts, mass, {});
+  const double epsilon = CalcEpsilonQuality(wrenches);
+  EXPECT_GT(epsilon, 0.01);
+  Random random(8);
+  for (double shake = 1e-16; shake < 1e-9; shake *= 2.0) {
+    for (int i = 0; i < 20; ++i) {
+      Wrenches shaken = wrenches;
+      for (double& w : shaken.reshaped()) {
+        w += random.NextUniform(-shake, shake);
+      }
+      ASSERT_NEAR(CalcEpsilonQuality(shaken), epsilon, 1e-9 + 10.0 * shake);
+    }
+  }
+}
+
 TEST(EpsilonQuality, GrowsWithFrictionAndWithMoreContacts) {
   Random random(13);
   for (int i = 0; i < 200; ++i) {
