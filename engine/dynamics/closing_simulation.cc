@@ -147,8 +147,8 @@ class ClosingRun {
     Eigen::VectorXd q;       // All joints …
     Eigen::VectorXd motors;  // … and where the closing ones' motors are.
     Eigen::Matrix3d R_WO{Eigen::Matrix3d::Identity()};
-    Eigen::Vector3d p_WC;      // The object's mass centre.
-    Vector velocity;  // The object's v and w, then closing joints.
+    Eigen::Vector3d p_WC;  // The object's mass centre.
+    Vector velocity;       // The object's v and w, then closing joints.
   };
 
   // A probe of a link that is, or will be, in contact.
