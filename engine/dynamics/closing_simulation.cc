@@ -103,7 +103,7 @@ class ClosingRun {
         finder_(hand_, solid_, simulation.near_) {
     state_.q = q;
     state_.p_WC = solid_.mass().p_McCM;
-    state_.velocity = Vector::Zero(size_);
+    state_.velocity = Eigen::VectorXd::Zero(size_);
     blocked_.assign(joints_.size(), false);
     speeds_.assign(joints_.size(), 0.0);
     twists_.resize(joints_.size());
@@ -140,15 +140,13 @@ class ClosingRun {
  private:
   using Twist = Eigen::Matrix<double, 6, 1>;  // v of the point at p_WC, then w.
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
 
   struct State {
     Eigen::VectorXd q;       // All joints …
     Eigen::VectorXd motors;  // … and where the closing ones' motors are.
     Eigen::Matrix3d R_WO{Eigen::Matrix3d::Identity()};
-    Eigen::Vector3d p_WC;  // The object's mass centre.
-    Vector velocity;       // The object's v and w, then closing joints.
+    Eigen::Vector3d p_WC;      // The object's mass centre.
+    Eigen::VectorXd velocity;  // The object's v and w, then closing joints.
   };
 
   // A probe of a link that is, or will be, in contact.
@@ -292,8 +290,8 @@ class ClosingRun {
   void Step(const Eigen::Vector3d& push) {
     FindTouches();
     const double dt = parameters_.time_step;
-    Matrix& A0 = A0_;
-    Vector& b0 = b0_;
+    Eigen::MatrixXd& A0 = A0_;
+    Eigen::VectorXd& b0 = b0_;
     A0.setZero(size_, size_);
     b0.setZero(size_);
     A0.topLeftCorner<3, 3>().diagonal().setConstant(parameters_.mass / dt);
@@ -315,7 +313,7 @@ class ClosingRun {
         b0[i] += std::copysign(joint.holding_torque, lead);
       }
     }
-    Vector& x = x_;
+    Eigen::VectorXd& x = x_;
     x = state_.velocity;
     for (int pass = 0; pass < kPasses; ++pass) {
       A_ = A0;
@@ -330,7 +328,7 @@ class ClosingRun {
 
   // What a link's touches press and rub, given the speeds x of the pass
   // before, to the lower half of A and to b.
-  void AddContacts(const Contacts& contacts, const Vector& x) {
+  void AddContacts(const Contacts& contacts, const Eigen::VectorXd& x) {
     const double dt = parameters_.time_step;
     const double stiffness = parameters_.contact_stiffness;
     const std::vector<int>& movers =
@@ -470,9 +468,9 @@ class ClosingRun {
   std::vector<Contacts> contacts_;
   std::vector<RigidTransform> X_WL_;
   std::vector<Twist> twists_;  // Of the closing joints, about p_WC.
-  Matrix A0_, A_;
-  Vector b0_, b_, x_;
-  Eigen::LLT<Matrix> solver_;  // Reads the lower half.
+  Eigen::MatrixXd A0_, A_;
+  Eigen::VectorXd b0_, b_, x_;
+  Eigen::LLT<Eigen::MatrixXd> solver_;  // Reads the lower half.
 };
 
 ClosingOutcome ClosingSimulation::Run(const RigidTransform& X_OH,

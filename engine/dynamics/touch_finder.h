@@ -25,7 +25,7 @@ class TouchFinder {
         watches_(static_cast<size_t>(hand.model().num_links())) {}
 
   /** What is looked at is at most so far from the solid, m. */
-  double reach() const { return kWatched + near_; }
+  double reach() const { return kLongestWatch + near_; }
 
   /** No point of a link that is within reach() of the solid has moved farther
    than `distance`, m, relative to it. */
@@ -58,8 +58,10 @@ class TouchFinder {
   }
 
  private:
-  // Probes so much farther than asked for are looked at, too, m.
+  // Probes so much farther than asked for are looked at, too, m; where all
+  // others are even farther, the link may move on so far at most.
   static constexpr double kWatched = 0.003;
+  static constexpr double kLongestWatch = 0.02;
 
   struct Probe {
     Eigen::Vector3d p_L;

@@ -84,15 +84,8 @@ void DistanceField::FillRest(const SurfaceIndex& index_M) {
   });
 }
 
-double DistanceField::CalcOutside(const Eigen::Vector3d& p_M) const {
-  const Eigen::Vector3d inside =
-      p_M.cwiseMax(origin_).cwiseMin(origin_ + cell_ * last_);
-  const double beyond = (p_M - inside).norm();
-  const Eigen::Vector3d u =
-      ((inside - origin_) * inverse_cell_).cwiseMax(0.0).cwiseMin(last_);
-  // Both are proven: the mesh ends margin_ before the grid does, and distance
-  // has Lipschitz constant one.
-  return std::max(beyond + margin_, Interpolate(u) - beyond);
+double DistanceField::Calc(const Eigen::Vector3d& p_M) const {
+  return PosedField(*this, RigidTransform::Identity())(p_M);
 }
 
 }  // namespace graspdb

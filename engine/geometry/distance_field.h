@@ -29,13 +29,7 @@ class DistanceField {
   /** The signed distance at p, m; negative inside. The true one is nowhere
    smaller than this, less max_error(); within a cell of the surface it is no
    larger than this, plus max_error(), either. */
-  double Calc(const Eigen::Vector3d& p_M) const {
-    const Eigen::Vector3d u = (p_M - origin_) * inverse_cell_;
-    if (!(u.minCoeff() >= 0.0 && (u.array() <= last_.array()).all())) {
-      return CalcOutside(p_M);
-    }
-    return Interpolate(u);
-  }
+  double Calc(const Eigen::Vector3d& p_M) const;
 
   /** The slope of Calc() at p, out of the solid, not normalised; zero outside
    the grid. */
@@ -90,20 +84,6 @@ class DistanceField {
     return found;
   }
 
-  double Interpolate(const Eigen::Vector3d& u) const {
-    const auto [v, t] = FindCell(u);
-    const auto along_x = [&t = t](const float* row) {
-      return row[0] + t[0] * (row[1] - row[0]);
-    };
-    const auto along_xy = [&](const float* slice) {
-      const float low = along_x(slice);
-      return low + t[1] * (along_x(slice + stride_y_) - low);
-    };
-    const float low = along_xy(v);
-    return low + t[2] * (along_xy(v + stride_z_) - low);
-  }
-
-  double CalcOutside(const Eigen::Vector3d& p_M) const;
   void FillCoarse(const SurfaceIndex& index_M);
   void FillRest(const SurfaceIndex& index_M);
   float& at(int ix, int iy, int iz) {
@@ -126,8 +106,8 @@ class DistanceField {
 };
 
 /** The field as a body sees it that stands somewhere: Calc() for points of the
- body's frame L, in single precision and in half the time; errs by less than
- what max_error() has for rounding. Refers to the field. */
+ body's frame L. Single precision: what that errs is within max_error(). Refers
+ to the field. */
 class PosedField {
  public:
   PosedField(const DistanceField& field, const RigidTransform& X_ML)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -58,20 +59,29 @@ class SphereTree {
   double CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
                       double enough) const;
 
-  /** Calls visit(p_L) for each probe nearer than `limit`, in order. */
+  /** Calls visit(p_L, distance) for each probe no farther than `limit`, in
+   order. @returns a lower bound of how far all others are. */
   template <class DistanceFunction, class Visitor>
-  void VisitNear(const DistanceFunction& distance, double limit,
-                 const Visitor& visit) const {
+  double VisitNear(const DistanceFunction& distance, double limit,
+                   const Visitor& visit) const {
+    double others = 1e300;
     int stack[64];
     int size = 0;
     stack[size++] = 0;
     while (size > 0) {
       const Node& node = nodes_[stack[--size]];
-      if (distance(node.center) - node.radius > limit) continue;
-      if (node.num_probes > 0) {
+      const double bound = distance(node.center) - node.radius;
+      if (bound > limit) {
+        others = std::min(others, bound);
+      } else if (node.num_probes > 0) {
         for (int i = 0; i < node.num_probes; ++i) {
           const Eigen::Vector3d& p_L = probes_[node.first + i];
-          if (distance(p_L) <= limit) visit(p_L);
+          const double d = distance(p_L);
+          if (d <= limit) {
+            visit(p_L, d);
+          } else {
+            others = std::min(others, d);
+          }
         }
       } else {
         // The second child goes first onto the stack: probes come in order.
@@ -79,6 +89,7 @@ class SphereTree {
         stack[size++] = node.first;
       }
     }
+    return others;
   }
 
  private:

@@ -30,18 +30,15 @@ constexpr double kPenetrationSpacing = 0.001;  // m
 
 // Visits patches of at most the spacing that may lie inside the solid.
 void VisitInside(const SurfacePatch& patch, const RigidTransform& X_OL,
-                 const Solid& solid, double& deepest) {
-  const Eigen::Vector3d p_O = X_OL * patch.p;
-  if (solid.field().Calc(p_O) - solid.field().max_error() > patch.radius) {
-    return;
-  }
+                 const Solid& solid, const PosedField& field, double& deepest) {
+  if (field(patch.p) - solid.field().max_error() > patch.radius) return;
   if (patch.radius > kPenetrationSpacing) {
     for (const SurfacePatch& half : SplitPatch(patch)) {
-      VisitInside(half, X_OL, solid, deepest);
+      VisitInside(half, X_OL, solid, field, deepest);
     }
     return;
   }
-  deepest = std::min(deepest, solid.index().CalcSignedDistance(p_O));
+  deepest = std::min(deepest, solid.index().CalcSignedDistance(X_OL * patch.p));
 }
 
 }  // namespace
@@ -209,11 +206,12 @@ double CalcPenetration(const HandShape& hand,
   for (int i = 0; i < hand.model().num_links(); ++i) {
     if (!hand.link(i)) continue;
     const RigidTransform X_OL = configuration.X_OH * X_HL[i];
+    const PosedField field(solid.field(), X_OL);
     const TriangleMesh& mesh_L = hand.link(i)->mesh_L;
     for (int f = 0; f < mesh_L.num_triangles(); ++f) {
       VisitInside(MakeSurfacePatch({mesh_L.corner(f, 0), mesh_L.corner(f, 1),
                                     mesh_L.corner(f, 2)}),
-                  X_OL, solid, deepest);
+                  X_OL, solid, field, deepest);
     }
     // The object's vertices within the link.
     const RigidTransform X_LO = X_OL.Inverse();

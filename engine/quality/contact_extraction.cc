@@ -50,10 +50,9 @@ class LinkContacts {
     std::vector<Contact> candidates;
     link_.tree.VisitNear(PosedField(solid_.field(), X_OL_),
                          parameters_.tolerance + kSlack,
-                         [&](const Eigen::Vector3d& p_L) {
-                           if (const auto contact = FindContact(X_OL_ * p_L)) {
-                             candidates.push_back(*contact);
-                           }
+                         [&](const Eigen::Vector3d& p_L, double /*distance*/) {
+                           const auto contact = FindContact(X_OL_ * p_L);
+                           if (contact) candidates.push_back(*contact);
                          });
     return candidates;
   }

@@ -71,15 +71,24 @@ TEST_F(TreeOfABox, VisitsExactlyTheProbesWithinTheLimit) {
   const Eigen::Vector3d q(0.015, 0.0, 0.01);
   const auto distance = DistanceTo(q);
   int visited = 0;
-  tree_.VisitNear(distance, 0.012, [&](const Eigen::Vector3d& p) {
-    EXPECT_LE(distance(p), 0.012);
-    ++visited;
-  });
+  const double others =
+      tree_.VisitNear(distance, 0.012, [&](const Eigen::Vector3d& p, double d) {
+        EXPECT_EQ(d, distance(p));
+        EXPECT_LE(d, 0.012);
+        ++visited;
+      });
   const auto expected =
       std::count_if(tree_.probes().begin(), tree_.probes().end(),
                     [&](const auto& p) { return distance(p) <= 0.012; });
   EXPECT_EQ(visited, expected);
   EXPECT_GT(visited, 5);
+  // It promises no more than the nearest of the others, nor nothing.
+  double nearest = 1.0;
+  for (const Eigen::Vector3d& p : tree_.probes()) {
+    if (distance(p) > 0.012) nearest = std::min(nearest, distance(p));
+  }
+  EXPECT_LE(others, nearest);
+  EXPECT_GT(others, 0.012);
 }
 
 }  // namespace
