@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <benchmark/benchmark.h>
+
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
 #include "engine/parameters/parameters.h"
@@ -22,10 +24,13 @@ struct Scene {
 
 const Scene& GetScene();
 
-/** The next one of a list, around and around. */
-template <class T>
-const T& Next(const std::vector<T>& all, size_t& i) {
-  return all[i++ % all.size()];
+/** Times f(scene, one) over the list, around and around. */
+template <class T, class F>
+void RunOver(benchmark::State& state, const std::vector<T>& all, const F& f) {
+  size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(f(GetScene(), all[i++ % all.size()]));
+  }
 }
 
 }  // namespace graspdb::bench

@@ -8,55 +8,28 @@
 namespace graspdb::bench {
 namespace {
 
-void RunClosing(benchmark::State& state, Precision precision) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    const Grasp& grasp = Next(scene.grasps, i);
-    benchmark::DoNotOptimize(CloseFingers(scene.hand, grasp.configuration.X_OH,
-                                          grasp.q_pregrasp, scene.solid,
-                                          precision));
-  }
+void Closing(benchmark::State& state, Precision precision) {
+  RunOver(state, GetScene().grasps, [&](const Scene& scene, const Grasp& one) {
+    return CloseFingers(scene.hand, one.configuration.X_OH, one.q_pregrasp,
+                        scene.solid, precision);
+  });
 }
+BENCHMARK_CAPTURE(Closing, estimated, Precision::kEstimated);
+BENCHMARK_CAPTURE(Closing, exact, Precision::kExact);
 
-void EstimatedClosing(benchmark::State& state) {
-  RunClosing(state, Precision::kEstimated);
+void Judging(benchmark::State& state, Precision precision) {
+  RunOver(state, GetScene().grasps, [&](const Scene& scene, const Grasp& one) {
+    return CloseAndJudge(scene.hand, one.configuration.X_OH, one.q_pregrasp,
+                         scene.solid, scene.parameters, precision);
+  });
 }
-BENCHMARK(EstimatedClosing);
-
-void ExactClosing(benchmark::State& state) {
-  RunClosing(state, Precision::kExact);
-}
-BENCHMARK(ExactClosing);
-
-void RunJudging(benchmark::State& state, Precision precision) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    const Grasp& grasp = Next(scene.grasps, i);
-    benchmark::DoNotOptimize(CloseAndJudge(scene.hand, grasp.configuration.X_OH,
-                                           grasp.q_pregrasp, scene.solid,
-                                           scene.parameters, precision));
-  }
-}
-
-void EstimatedJudging(benchmark::State& state) {
-  RunJudging(state, Precision::kEstimated);
-}
-BENCHMARK(EstimatedJudging);
-
-void ExactJudging(benchmark::State& state) {
-  RunJudging(state, Precision::kExact);
-}
-BENCHMARK(ExactJudging);
+BENCHMARK_CAPTURE(Judging, estimated, Precision::kEstimated);
+BENCHMARK_CAPTURE(Judging, exact, Precision::kExact);
 
 void TimingFingers(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(TimeFingers(scene.hand, Next(scene.grasps, i),
-                                         scene.solid, scene.parameters));
-  }
+  RunOver(state, GetScene().grasps, [](const Scene& scene, const Grasp& one) {
+    return TimeFingers(scene.hand, one, scene.solid, scene.parameters);
+  });
 }
 BENCHMARK(TimingFingers);
 

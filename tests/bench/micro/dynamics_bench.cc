@@ -8,28 +8,17 @@
 namespace graspdb::bench {
 namespace {
 
-void RunSimulation(benchmark::State& state, Push push) {
+void SimulatedClosing(benchmark::State& state, Push push) {
   const Scene& scene = GetScene();
   const ClosingSimulation simulation(
       scene.hand, scene.solid, scene.parameters.hold, scene.parameters.motors);
-  size_t i = 0;
-  for (auto _ : state) {
-    const Grasp& grasp = Next(scene.grasps, i);
-    benchmark::DoNotOptimize(
-        simulation.Run(grasp.configuration.X_OH, grasp.q_pregrasp,
-                       scene.parameters.contact.friction, push));
-  }
+  RunOver(state, scene.grasps, [&](const Scene&, const Grasp& one) {
+    return simulation.Run(one.configuration.X_OH, one.q_pregrasp,
+                          scene.parameters.contact.friction, push);
+  });
 }
-
-void SimulatedClosing(benchmark::State& state) {
-  RunSimulation(state, Push::kNone);
-}
-BENCHMARK(SimulatedClosing);
-
-void SimulatedClosingAndPush(benchmark::State& state) {
-  RunSimulation(state, Push::kPlusX);
-}
-BENCHMARK(SimulatedClosingAndPush);
+BENCHMARK_CAPTURE(SimulatedClosing, alone, Push::kNone);
+BENCHMARK_CAPTURE(SimulatedClosing, and_push, Push::kPlusX);
 
 }  // namespace
 }  // namespace graspdb::bench

@@ -23,19 +23,17 @@ std::vector<Eigen::Vector3d> DrawPoints() {
 
 void FieldDistance(benchmark::State& state) {
   const DistanceField& field = GetScene().solid.field();
-  const auto points = DrawPoints();
-  size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(field.Calc(Next(points, i)));
+  RunOver(state, DrawPoints(), [&](const Scene&, const Eigen::Vector3d& p) {
+    return field.Calc(p);
+  });
 }
 BENCHMARK(FieldDistance);
 
 void ClosestPointOnTheSurface(benchmark::State& state) {
   const SurfaceIndex& index = GetScene().solid.index();
-  const auto points = DrawPoints();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(index.FindClosest(Next(points, i)));
-  }
+  RunOver(state, DrawPoints(), [&](const Scene&, const Eigen::Vector3d& p) {
+    return index.FindClosest(p);
+  });
 }
 BENCHMARK(ClosestPointOnTheSurface);
 

@@ -8,60 +8,44 @@ namespace graspdb::bench {
 namespace {
 
 void ForwardKinematics(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        CalcLinkPoses(scene.hand.model(), Next(scene.free, i).q));
-  }
+  RunOver(state, GetScene().free,
+          [](const Scene& scene, const HandConfiguration& one) {
+            return CalcLinkPoses(scene.hand.model(), one.q);
+          });
 }
 BENCHMARK(ForwardKinematics);
 
-template <class Test>
-void RunCollision(benchmark::State& state,
-                  const std::vector<HandConfiguration>& postures,
-                  const Test& test) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    const HandConfiguration& posture = Next(postures, i);
-    benchmark::DoNotOptimize(test(scene.hand, posture.X_OH,
-                                  CalcLinkPoses(scene.hand.model(), posture.q),
-                                  scene.solid));
-  }
-}
+using CollisionTest = int (*)(const HandShape&, const RigidTransform&,
+                              const std::vector<RigidTransform>&, const Solid&);
 
-void ExactCollisionWhenFree(benchmark::State& state) {
-  RunCollision(state, GetScene().free, FindCollidingLink);
+void Collision(benchmark::State& state, CollisionTest test,
+               const std::vector<HandConfiguration> Scene::*postures) {
+  RunOver(state, GetScene().*postures,
+          [test](const Scene& scene, const HandConfiguration& one) {
+            return test(scene.hand, one.X_OH,
+                        CalcLinkPoses(scene.hand.model(), one.q), scene.solid);
+          });
 }
-BENCHMARK(ExactCollisionWhenFree);
-
-void ExactCollisionWhenColliding(benchmark::State& state) {
-  RunCollision(state, GetScene().colliding, FindCollidingLink);
-}
-BENCHMARK(ExactCollisionWhenColliding);
-
-void EstimatedCollisionWhenFree(benchmark::State& state) {
-  RunCollision(state, GetScene().free, EstimateCollidingLink);
-}
-BENCHMARK(EstimatedCollisionWhenFree);
+BENCHMARK_CAPTURE(Collision, exact_free, FindCollidingLink, &Scene::free);
+BENCHMARK_CAPTURE(Collision, exact_colliding, FindCollidingLink,
+                  &Scene::colliding);
+BENCHMARK_CAPTURE(Collision, estimated_free, EstimateCollidingLink,
+                  &Scene::free);
 
 void SelfCollisionWhenOpen(benchmark::State& state) {
-  RunCollision(state, GetScene().free,
-               [](const HandShape& hand, const RigidTransform&,
-                  const std::vector<RigidTransform>& X_HL,
-                  const Solid&) { return FindSelfCollision(hand, X_HL); });
+  RunOver(state, GetScene().free,
+          [](const Scene& scene, const HandConfiguration& one) {
+            return FindSelfCollision(scene.hand,
+                                     CalcLinkPoses(scene.hand.model(), one.q));
+          });
 }
 BENCHMARK(SelfCollisionWhenOpen);
 
 void SelfCollisionWhenClosed(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(FindSelfCollision(
-        scene.hand, CalcLinkPoses(scene.hand.model(),
-                                  Next(scene.grasps, i).configuration.q)));
-  }
+  RunOver(state, GetScene().grasps, [](const Scene& scene, const Grasp& one) {
+    return FindSelfCollision(
+        scene.hand, CalcLinkPoses(scene.hand.model(), one.configuration.q));
+  });
 }
 BENCHMARK(SelfCollisionWhenClosed);
 

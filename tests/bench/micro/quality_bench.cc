@@ -11,29 +11,23 @@ namespace graspdb::bench {
 namespace {
 
 void ContactExtraction(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    const Grasp& grasp = Next(scene.grasps, i);
-    benchmark::DoNotOptimize(ExtractContacts(
-        scene.hand, grasp.configuration.X_OH,
-        CalcLinkPoses(scene.hand.model(), grasp.configuration.q), scene.solid,
-        scene.parameters.contact));
-  }
+  RunOver(state, GetScene().grasps, [](const Scene& scene, const Grasp& one) {
+    return ExtractContacts(
+        scene.hand, one.configuration.X_OH,
+        CalcLinkPoses(scene.hand.model(), one.configuration.q), scene.solid,
+        scene.parameters.contact);
+  });
 }
 BENCHMARK(ContactExtraction);
 
 // Of all contacts of real grasps.
 void EpsilonOfGrasps(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
   double contacts = 0.0;
-  for (auto _ : state) {
-    const Grasp& grasp = Next(scene.grasps, i);
-    contacts += static_cast<double>(grasp.contacts.size());
-    benchmark::DoNotOptimize(CalcEpsilon(grasp.contacts, scene.solid.mass(),
-                                         scene.parameters.contact));
-  }
+  RunOver(state, GetScene().grasps, [&](const Scene& scene, const Grasp& one) {
+    contacts += static_cast<double>(one.contacts.size());
+    return CalcEpsilon(one.contacts, scene.solid.mass(),
+                       scene.parameters.contact);
+  });
   state.counters["contacts"] =
       benchmark::Counter(contacts, benchmark::Counter::kAvgIterations);
 }
@@ -53,30 +47,23 @@ void EpsilonOfContacts(benchmark::State& state) {
     all.push_back(CalcContactWrenches(some, scene.solid.mass(),
                                       scene.parameters.contact));
   }
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(CalcEpsilonQuality(Next(all, i)));
-  }
+  RunOver(state, all, [](const Scene&, const Wrenches& wrenches) {
+    return CalcEpsilonQuality(wrenches);
+  });
 }
 BENCHMARK(EpsilonOfContacts)->DenseRange(3, 7);
 
 void HybridMeasure(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(CalcHybrid(scene.hand, Next(scene.grasps, i),
-                                        scene.solid, scene.parameters));
-  }
+  RunOver(state, GetScene().grasps, [](const Scene& scene, const Grasp& one) {
+    return CalcHybrid(scene.hand, one, scene.solid, scene.parameters);
+  });
 }
 BENCHMARK(HybridMeasure);
 
 void GripResidual(benchmark::State& state) {
-  const Scene& scene = GetScene();
-  size_t i = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(CalcGrip(scene.hand, Next(scene.grasps, i),
-                                      scene.solid.mass(), scene.parameters));
-  }
+  RunOver(state, GetScene().grasps, [](const Scene& scene, const Grasp& one) {
+    return CalcGrip(scene.hand, one, scene.solid.mass(), scene.parameters);
+  });
 }
 BENCHMARK(GripResidual);
 

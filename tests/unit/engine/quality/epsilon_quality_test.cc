@@ -1,5 +1,6 @@
 #include "engine/quality/epsilon_quality.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -24,6 +25,23 @@ std::vector<Contact> MakeRandomContacts(int count, Random& random) {
     contacts.push_back({0, p, random.NextRotationWithin(M_PI / 6) * p, 0.0});
   }
   return contacts;
+}
+
+// Two jaws 40 mm apart press flat on a block, each with four corners.
+Wrenches MakePinchWrenches(const std::array<double, 2>& ys,
+                           const std::array<double, 2>& zs) {
+  std::vector<Contact> contacts;
+  for (const double x : {-0.02, 0.02}) {
+    for (const double y : ys) {
+      for (const double z : zs) {
+        contacts.push_back(
+            {1, {x, y, z}, {x > 0 ? 1.0 : -1.0, 0.0, 0.0}, 0.0001});
+      }
+    }
+  }
+  MassProperties mass;
+  mass.max_radius = 0.035;
+  return CalcContactWrenches(contacts, mass, {});
 }
 
 TEST(EpsilonQuality, OfACrossPolytopeIsItsInradius) {
@@ -97,18 +115,8 @@ TEST(WrenchVolume, AgreesWithQhull) {
 // Eight contacts at the corners of two flat patches: many coplanar wrenches,
 // on which the polytope once grew until memory ran out.
 TEST(WrenchVolume, OfTwoFlatPatchesIsFoundOrGivenUp) {
-  std::vector<Contact> contacts;
-  for (const double x : {-0.02, 0.02}) {
-    for (const double y : {-0.00999, 0.00998}) {
-      for (const double z : {-0.0098, 0.0188}) {
-        contacts.push_back(
-            {1, {x, y, z}, {x > 0 ? 1.0 : -1.0, 0.0, 0.0}, 0.0001});
-      }
-    }
-  }
-  MassProperties mass;
-  mass.max_radius = 0.035;
-  const Wrenches wrenches = CalcContactWrenches(contacts, mass, {});
+  const Wrenches wrenches =
+      MakePinchWrenches({-0.00999, 0.00998}, {-0.0098, 0.0188});
   EXPECT_GE(CalcWrenchVolume(wrenches), 0.0);
   EXPECT_GT(CalcEpsilonQuality(wrenches), 0.0);
 }
@@ -116,18 +124,7 @@ TEST(WrenchVolume, OfTwoFlatPatchesIsFoundOrGivenUp) {
 // Regression: where many wrenches lie in one plane, but for rounding, walking
 // around a ridge did not end.
 TEST(EpsilonQuality, OfTwoFlatPatchesDoesNotDependOnTheLastDigits) {
-  std::vector<Contact> contacts;
-  for (const double x : {-0.02, 0.02}) {
-    for (const double y : {-0.01, 0.01}) {
-      for (const double z : {-0.015, 0.005}) {
-        contacts.push_back(
-            {1, {x, y, z}, {x > 0 ? 1.0 : -1.0, 0.0, 0.0}, 0.0001});
-      }
-    }
-  }
-  MassProperties mass;
-  mass.max_radius = 0.035;
-  const Wrenches wrenches = CalcContactWrenches(contacts, mass, {});
+  const Wrenches wrenches = MakePinchWrenches({-0.01, 0.01}, {-0.015, 0.005});
   const double epsilon = CalcEpsilonQuality(wrenches);
   EXPECT_GT(epsilon, 0.01);
   Random random(8);
