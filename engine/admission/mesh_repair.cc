@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,7 +28,6 @@
 #include <fmt/core.h>
 
 #include "engine/admission/soup_cleaning.h"
-#include "engine/base/contract.h"
 
 namespace graspdb {
 namespace {
