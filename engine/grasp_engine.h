@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,6 +84,11 @@ struct PartAlignment {
   double mapped_share{0.0};  ///< Samples that pass the consistency check.
 };
 
+/** Hears of each record of a result in order, as soon as it and those before it
+ have ended: its place in TransferResult::records, and itself. Called from the
+ computing threads, one at a time. */
+using RecordCallback = std::function<void(int, const TransferRecord&)>;
+
 struct TransferRequest {
   std::shared_ptr<const HandModel> hand;
   LabelledMesh example;             ///< Whole example object, frame E.
@@ -100,16 +106,21 @@ struct TransferRequest {
    on the novel object. */
   std::vector<int> keep_free;
   int sources_per_part{40};
+  /** When set, those that promise most are tried first, the parts in turn, and
+   no more once so many grasps hold transfer.sure_grip of their copies. */
+  std::optional<int> enough;
   bool assemble{true};
   Parameters parameters;
   uint64_t seed{1};
-  int threads{0};  ///< 0: as many as there are cores.
+  int threads{0};              ///< 0: as many as there are cores.
+  RecordCallback on_record{};  ///< May be empty.
 };
 
 struct TransferResult {
   std::vector<PartAlignment> alignments;  ///< One per novel part.
-  std::vector<TransferRecord> records;    ///< Part by part, source by source.
-  bool complete{true};                    ///< False when the deadline cut it.
+  /** Part by part, source by source; as tried when `enough` was set. */
+  std::vector<TransferRecord> records;
+  bool complete{true};  ///< False when the deadline cut it.
 };
 
 /** Sec. V: maps, replans and assembles source grasps on a novel object. The

@@ -12,7 +12,7 @@
 namespace graspdb {
 namespace {
 
-constexpr std::array<std::string_view, 11> kSettings{"db",
+constexpr std::array<std::string_view, 12> kSettings{"db",
                                                      "host",
                                                      "port",
                                                      "server",
@@ -21,6 +21,7 @@ constexpr std::array<std::string_view, 11> kSettings{"db",
                                                      "wait",
                                                      "http_threads",
                                                      "max_upload_bytes",
+                                                     "max_queued_jobs",
                                                      "decoder",
                                                      "allow_unsandboxed"};
 

@@ -54,7 +54,9 @@ struct TransferOrder {
   std::string task;  ///< Parts that serve it; not together with part_labels.
   std::string hand{kDefaultHand};
   std::optional<int> count;  ///< Most grasps to return, 1..1000; unset: all.
-  int sources{40};           ///< Source grasps per part, 1..1000.
+  /** With `count`: all sources are tried, not only until so many are sure. */
+  bool exhaustive{false};
+  int sources{40};  ///< Source grasps per part, 1..1000.
   GraspStage stage{GraspStage::kAssembly};  ///< kTransfer or kAssembly.
   Parameters parameters;  ///< contact.friction is what the request asks for.
   uint64_t seed{1};

@@ -93,6 +93,10 @@ const char* ToString(ErrorCode code) {
       return "deadline_exceeded";
     case ErrorCode::kStorage:
       return "storage";
+    case ErrorCode::kOverloaded:
+      return "overloaded";
+    case ErrorCode::kKeyReused:
+      return "key_reused";
     case ErrorCode::kNotImplemented:
       return "not_implemented";
     case ErrorCode::kInternal:
@@ -164,6 +168,7 @@ Result<ErrorCode> ParseErrorCode(const std::string& text) {
                           ErrorCode::kNotFound, ErrorCode::kConflict,
                           ErrorCode::kNotInCategory, ErrorCode::kCancelled,
                           ErrorCode::kDeadlineExceeded, ErrorCode::kStorage,
+                          ErrorCode::kOverloaded, ErrorCode::kKeyReused,
                           ErrorCode::kNotImplemented, ErrorCode::kInternal});
 }
 

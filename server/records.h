@@ -271,6 +271,8 @@ struct StoredTransfer {
   std::string engine_version;
   double similarity{0.0};  ///< Of object and example, 0..1.
   bool complete{true};     ///< False when the deadline cut it.
+  /** Sources were tried until so many grasps were sure; unset: all were. */
+  std::optional<int> enough;
   std::vector<StoredAttempt> attempts;
   std::vector<StoredContactMap> contact_maps;
   std::vector<std::string> warnings;
@@ -306,6 +308,8 @@ struct StoredJob {
   std::string result_id;
   std::optional<Error> error;
   std::optional<double> eta_seconds;  ///< Known while it runs.
+  /** Grasps that a running transfer has found so far. */
+  std::optional<int64_t> grasps_found;
   std::string created_at;
   std::string started_at;   ///< Empty until then.
   std::string finished_at;  ///< Empty until then.

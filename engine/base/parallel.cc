@@ -1,5 +1,9 @@
 #include "engine/base/parallel.h"
 
+#include <atomic>
+#include <mutex>
+#include <vector>
+
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -42,6 +46,29 @@ void ParallelFor(int count, const std::function<void(int)>& body) {
     join.Leave();
   });
   join.Enter();
+}
+
+int ParallelUntil(int count,
+                  const std::function<void(int, const Wanted&)>& body,
+                  const std::function<bool(int)>& is_last) {
+  std::mutex mutex;
+  std::vector<bool> done(static_cast<size_t>(count));
+  std::atomic<int> end = count;
+  int begun = 0, checked = 0;
+  ParallelFor(CountThreads(), [&](int) {
+    std::unique_lock lock(mutex);
+    while (begun < end) {
+      const int i = begun++;
+      lock.unlock();
+      body(i, [&end, i] { return i < end; });
+      lock.lock();
+      done[static_cast<size_t>(i)] = true;
+      for (; checked < end && done[static_cast<size_t>(checked)]; ++checked) {
+        if (is_last(checked)) end = checked + 1;
+      }
+    }
+  });
+  return end;
 }
 
 void RunInArena(int threads, const std::function<void()>& work) {

@@ -21,6 +21,8 @@ enum class ErrorCode {
   kCancelled,         ///< The caller cancelled.
   kDeadlineExceeded,  ///< The time allowed ran out before any answer.
   kStorage,           ///< The database or disk failed.
+  kOverloaded,        ///< Too much is asked for at once.
+  kKeyReused,         ///< An idempotency key stands for another request.
   kNotImplemented,    ///< Announced by the contract, not built yet.
   kInternal,          ///< A bug.
 };

@@ -196,6 +196,7 @@ struct TransferLimits {
   double max_target_distance{0.010};
   int min_opposed_contacts{2};
   double min_clearance{0.010};
+  double sure_grip{0.9};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -211,6 +212,9 @@ struct TransferLimits {
     f("min_clearance", self.min_clearance,
       ParameterInfo{"m", 0, 0.2,
                     "ours: hand from a part that the task keeps free"});
+    f("sure_grip", self.sure_grip,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of copies held; enough to stop looking"});
   }
   bool operator==(const TransferLimits&) const = default;
 };

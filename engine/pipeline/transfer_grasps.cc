@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <atomic>
+#include <limits>
+#include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -12,6 +13,7 @@
 #include "engine/pipeline/part_clearance.h"
 #include "engine/pipeline/source_grasps.h"
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/planning/perturbed_copies.h"
 #include "engine/quality/epsilon_quality.h"
 #include "engine/quality/opposed_contacts.h"
 #include "engine/quality/wrench_space.h"
@@ -71,20 +73,29 @@ class Transferrer {
     if (context_.Cancelled()) {
       return Error{ErrorCode::kCancelled, "the transfer was cancelled"};
     }
-    std::atomic<int> done{0};
-    std::mutex progress_mutex;
+    if (request_.enough) SortByPromise(result.records);
+    int found = 0;
     std::atomic<bool> complete{true};
     const int count = static_cast<int>(result.records.size());
-    ParallelFor(count, [&](int i) {
-      if (context_.Cancelled()) {
-        complete = false;
-        return;
-      }
-      TransferOne(result.records[i]);
-      const double share = static_cast<double>(++done) / count;
-      const std::lock_guard lock(progress_mutex);
-      context_.ReportProgress("transferring", 0.1 + 0.9 * share);
-    });
+    const int tried = ParallelUntil(
+        count,
+        [&](int i, const Wanted& wanted) {
+          TransferOne(result.records[i],
+                      [&] { return wanted() && !context_.Cancelled(); });
+          if (context_.Cancelled()) complete = false;
+        },
+        [&](int i) {
+          const TransferRecord& record = result.records[i];
+          if (request_.on_record) request_.on_record(i, record);
+          if (IsSure(record)) ++found;
+          double share = (i + 1.0) / count;
+          if (request_.enough) {
+            share = std::max(share, 1.0 * found / *request_.enough);
+          }
+          context_.ReportProgress("transferring", 0.1 + 0.9 * share);
+          return request_.enough && found >= *request_.enough;
+        });
+    result.records.resize(static_cast<size_t>(tried));
     result.complete = complete;
     return result;
   }
@@ -170,8 +181,53 @@ class Transferrer {
     return start;
   }
 
+  // Good enough not to look for a better one.
+  bool IsSure(const TransferRecord& record) const {
+    const auto& grasp =
+        request_.assemble ? record.assembled : record.transferred;
+    return grasp && record.robust.gripped >= parameters_.transfer.sure_grip;
+  }
+
+  // Of each part those first whose starts promise most, the parts in turn.
+  void SortByPromise(std::vector<TransferRecord>& records) const {
+    struct Place {
+      int turn;
+      double promise;
+      int index;
+    };
+    std::vector<Place> order(records.size());
+    ParallelFor(static_cast<int>(records.size()), [&](int i) {
+      order[i] = {0, CalcPromise(records[i]), i};
+    });
+    std::stable_sort(
+        order.begin(), order.end(),
+        [](const Place& a, const Place& b) { return a.promise < b.promise; });
+    std::map<int, int> turns;
+    for (Place& place : order) place.turn = turns[records[place.index].part]++;
+    std::stable_sort(
+        order.begin(), order.end(),
+        [](const Place& a, const Place& b) { return a.turn < b.turn; });
+    std::vector<TransferRecord> sorted;
+    for (const Place& place : order) {
+      sorted.push_back(std::move(records[place.index]));
+    }
+    records = std::move(sorted);
+  }
+
+  double CalcPromise(const TransferRecord& record) const {
+    const PartPair& pair = pairs_[record.part];
+    if (!pair.map) return std::numeric_limits<double>::infinity();
+    const Grasp& source =
+        request_.grasp_spaces[record.part]->grasps[record.source_grasp];
+    std::vector<std::optional<Eigen::Vector3d>> targets_N;
+    return graspdb::CalcPromise(hand_, MapGrasp(pair, source, targets_N),
+                                request_.assemble ? *whole_N_ : *pair.solid_N,
+                                parameters_);
+  }
+
   // One source grasp through all stages; touches its own record only.
-  void TransferOne(TransferRecord& record) const {
+  void TransferOne(TransferRecord& record, const Wanted& wanted) const {
+    if (!wanted()) return;
     const uint64_t p = record.part;
     const uint64_t s = record.source_grasp;
     const PartPair& pair = pairs_[p];
@@ -206,7 +262,9 @@ class Transferrer {
         Replan(hand_, task, *pair.solid_N, parameters_,
                DeriveSeed(request_.seed, {kReplan, p, s}),
                {.climb = !request_.assemble,
-                .epsilon_to_beat = record.open_close_epsilon_part});
+                .grip = !request_.assemble,
+                .epsilon_to_beat = record.open_close_epsilon_part,
+                .wanted = wanted});
     const double replanned = ThreadSeconds();
     record.transfer_seconds = replanned - start;
     record.transfer = on_part.outcome;
@@ -227,7 +285,8 @@ class Transferrer {
       ReplanResult on_whole =
           Assemble(hand_, task, *on_part.grasp, *whole_N_, parameters_,
                    DeriveSeed(request_.seed, {kAssemble, p, s}),
-                   {.epsilon_to_beat = record.open_close_epsilon_whole});
+                   {.epsilon_to_beat = record.open_close_epsilon_whole,
+                    .wanted = wanted});
       record.assembly_seconds = ThreadSeconds() - replanned;
       record.assembly = on_whole.outcome;
       if (!on_whole.grasp) return;

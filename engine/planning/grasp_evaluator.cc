@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/base/random.h"
-#include "engine/dynamics/closing_simulation.h"
 #include "engine/geometry/surface_patch.h"
 #include "engine/hand/hand_sweep.h"
 #include "engine/quality/contact_extraction.h"
@@ -17,11 +15,6 @@
 namespace graspdb {
 namespace {
 
-constexpr double kRobustShift = 0.003;              // m
-constexpr double kRobustTurn = 3.0 * M_PI / 180.0;  // rad
-constexpr double kRobustFriction = 0.2;
-// When grasps are compared, one is given up after so many lost copies.
-constexpr int kHopeless = 4;
 // Shares of a motor's range that are tried in turn, see TimeFingers().
 constexpr double kTravels[] = {0.5, 0.35, 0.25, 0.125, 0.06, 0.03};
 constexpr double kSameJoints = 0.01;           // rad; section "reachable".
@@ -112,7 +105,7 @@ bool IsReachable(const HandShape& hand, const Grasp& grasp,
 }
 
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
-                  const Parameters& parameters) {
+                  const Parameters& parameters, Precision precision) {
   if (!parameters.pregrasp.timed) return grasp;
   const HandModel& model = hand.model();
   // Where each motor's first joint is blocked, and how far all can be from it.
@@ -139,9 +132,9 @@ Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
         motors[a] -= travel * (actuator.upper - actuator.lower);
       }
     }
-    const EvaluatedGrasp timed =
-        CloseAndJudge(hand, grasp.configuration.X_OH,
-                      model.CalcCoupledJoints(motors), solid, parameters);
+    const EvaluatedGrasp timed = CloseAndJudge(hand, grasp.configuration.X_OH,
+                                               model.CalcCoupledJoints(motors),
+                                               solid, parameters, precision);
     if (timed.ok() &&
         (timed.grasp.configuration.q - grasp.configuration.q)
                 .cwiseAbs()
@@ -160,42 +153,6 @@ double CalcGrip(const HandShape& hand, const Grasp& grasp,
                           CalcLinkPoses(hand.model(), grasp.configuration.q),
                           grasp.contacts, mass, parameters.contact,
                           parameters.grip, parameters.motors, enough);
-}
-
-Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
-                          const Solid& solid, const Parameters& parameters,
-                          uint64_t seed, const RobustnessOptions& options) {
-  const ClosingSimulation simulation(hand, solid, parameters.hold,
-                                     parameters.motors);
-  const int copies = options.copies;
-  const double least = options.least_gripped;
-  Random random(seed);
-  int stable = 0;
-  int gripped = 0;
-  for (int i = 0; i < copies; ++i) {
-    if (gripped + copies - i < least * copies) break;
-    if (least > 0.0 && gripped == 0 && i == kHopeless) break;
-    RigidTransform X_OH = grasp.configuration.X_OH;
-    X_OH.translation += kRobustShift * random.NextInUnitBall();
-    X_OH.rotation = X_OH.rotation * random.NextRotationWithin(kRobustTurn);
-    Parameters perturbed = parameters;
-    perturbed.contact.friction *=
-        1.0 + random.NextUniform(-kRobustFriction, kRobustFriction);
-    const EvaluatedGrasp copy = CloseAndJudge(
-        hand, X_OH, grasp.q_pregrasp, solid, perturbed, Precision::kEstimated);
-    if (!copy.ok()) continue;
-    ++stable;
-    if (options.gripped &&
-        simulation
-            .Run(X_OH, grasp.q_pregrasp, perturbed.contact.friction,
-                 options.pushed ? static_cast<Push>(i % kNumPushes)
-                                : Push::kNone)
-            .held) {
-      ++gripped;
-    }
-  }
-  return {static_cast<double>(stable) / copies,
-          static_cast<double>(gripped) / copies};
 }
 
 double CalcPenetration(const HandShape& hand,
@@ -231,7 +188,7 @@ double CalcPenetration(const HandShape& hand,
       }
     }
   }
-  return -deepest;
+  return std::max(0.0, -deepest);  // Not -0.
 }
 
 }  // namespace graspdb

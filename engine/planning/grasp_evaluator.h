@@ -56,32 +56,14 @@ bool IsReachable(const HandShape& hand, const Grasp& grasp, const Solid& solid);
  approach so, or the fingers would end elsewhere; unchanged where nothing does.
  */
 Grasp TimeFingers(const HandShape& hand, const Grasp& grasp, const Solid& solid,
-                  const Parameters& parameters);
+                  const Parameters& parameters,
+                  Precision precision = Precision::kExact);
 
 /** CalcGripResidual() of a grasp's contacts on an object with these mass
  properties, N. */
 double CalcGrip(const HandShape& hand, const Grasp& grasp,
                 const MassProperties& mass, const Parameters& parameters,
                 double enough = 1e300);
-
-/** How closely robustness is looked at: as reported, when nothing is said. */
-struct RobustnessOptions {
-  int copies{32};
-  bool gripped{true};  ///< Whether grip matters; else it is left at 0.
-  bool pushed{true};   ///< Whether what is gripped is pushed, too.
-  /** When not 0, only grasps that are gripped so often matter: once that is out
-   of reach, or not one of the first four is, the shares so far are told. */
-  double least_gripped{0.0};
-};
-
-/** Of so many copies, the hand moved uniformly within a 3 mm ball and turned
- within 3 degrees, friction changed within ±20 %, fingers closed again, by
- estimate, from the pre-grasp. Gripped are those stable ones that a
- ClosingSimulation finds to be held, the i-th pushed along the i-th of ±x, ±y,
- ±z of O in turn. */
-Robustness CalcRobustness(const HandShape& hand, const Grasp& grasp,
-                          const Solid& solid, const Parameters& parameters,
-                          uint64_t seed, const RobustnessOptions& options = {});
 
 /** The deepest that a point of either surface lies inside the other solid, m,
  surfaces sampled every millimetre near each other; 0 without overlap. */

@@ -14,6 +14,7 @@
 #include "engine/planning/grasp_archive.h"
 #include "engine/planning/grasp_coverage.h"
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/planning/perturbed_copies.h"
 #include "engine/quality/opposed_contacts.h"
 
 namespace graspdb {

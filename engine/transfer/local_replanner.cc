@@ -8,6 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/planning/perturbed_copies.h"
 #include "engine/quality/opposed_contacts.h"
 #include "engine/transfer/replan_objective.h"
 
@@ -68,6 +69,18 @@ RigidTransform Confine(const RigidTransform& X_NH, const RigidTransform& around,
   return confined;
 }
 
+// T* X_EH and, if wanted, the wrist that brings the contacts to their targets.
+std::vector<RigidTransform> MakeStarts(const HandModel& hand,
+                                       const TransferTask& task,
+                                       const Parameters& parameters) {
+  std::vector<RigidTransform> starts{task.X_NH};
+  if (parameters.replan.aimed_starts) {
+    starts.push_back(
+        Confine(FitWrist(hand, task), task.X_NH, parameters.transfer));
+  }
+  return starts;
+}
+
 bool PalmCollides(const HandShape& hand, const RigidTransform& X_NH,
                   const Eigen::VectorXd& q, const Solid& solid) {
   return hand.link(0) &&
@@ -86,22 +99,30 @@ class Replanner {
         solid_(solid),
         parameters_(parameters),
         replan_(parameters.replan),
-        seed_(seed),
         options_(options),
+        copies_(hand, solid, parameters, seed, parameters.replan.grip_copies),
         random_(seed) {}
+
+  // Of the best start, with nothing looked at closely.
+  double RateStarts(const std::vector<RigidTransform>& starts) {
+    keeps_ = false;
+    return RankStarts(starts).front().value;
+  }
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
     std::vector<Rated> ranked = RankStarts(starts);
     int cycle = 0;
     do {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
-    } while (!best_ && ++cycle < replan_.cycles);
+    } while (!best_ && ++cycle < replan_.cycles && IsWanted());
     if (!best_) return {furthest_, std::nullopt};
-    if (options_.climb && replan_.grip_copies > 0) Climb();
+    if (options_.climb && UsesGrip()) Climb();
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
 
  private:
+  bool IsWanted() const { return !options_.wanted || options_.wanted(); }
+
   struct Sample {
     RigidTransform X_NH;
     Eigen::VectorXd motors;  // Before closing.
@@ -160,7 +181,8 @@ class Replanner {
     Sample here = start.sample;
     double here_value = start.value;
     int since_gain = 0;
-    for (int i = 0; i < replan_.iterations && since_gain < replan_.patience;
+    for (int i = 0;
+         i < replan_.iterations && since_gain < replan_.patience && IsWanted();
          ++i) {
       const double cooling = static_cast<double>(i) / replan_.iterations;
       const int gains_before = num_gains_;
@@ -188,7 +210,7 @@ class Replanner {
   // long as eps grows.
   void Climb() {
     int since_gain = 0;
-    for (int i = 0; i < replan_.climb_samples; ++i) {
+    for (int i = 0; i < replan_.climb_samples && IsWanted(); ++i) {
       if (merit_.sure >= replan_.enough_grip &&
           since_gain >= replan_.patience) {
         break;
@@ -215,17 +237,19 @@ class Replanner {
     return epsilon > options_.epsilon_to_beat ? 0.0 : replan_.behind_cost;
   }
 
-  Merit CalcMerit(const Grasp& grasp) const {
+  bool UsesGrip() const { return options_.grip && replan_.grip_copies > 0; }
+
+  // What a grasp must hold to be better than the best.
+  double CalcShareToBeat(const Grasp& grasp) const {
+    return std::max(kLeastGrip, merit_.sure + CalcCost(grasp.quality.epsilon));
+  }
+
+  // @param share  Of the copies that are held.
+  Merit MakeMerit(const Grasp& grasp, double share) const {
     const double epsilon = grasp.quality.epsilon;
     Merit merit{0.0, 0.0, epsilon};
-    if (replan_.grip_copies == 0) return merit;
-    const double cost = CalcCost(epsilon);
-    const double least = std::max(kLeastGrip, merit_.sure + cost);
-    const double share =
-        CalcRobustness(hand_, grasp, solid_, parameters_, seed_,
-                       {.copies = replan_.grip_copies, .least_gripped = least})
-            .gripped;
-    merit.sure = std::min(share, replan_.enough_grip) - cost;
+    if (!UsesGrip()) return merit;
+    merit.sure = std::min(share, replan_.enough_grip) - CalcCost(epsilon);
     if (share < replan_.enough_grip) {
       merit.unbalanced = -CalcGrip(hand_, grasp, solid_.mass(), parameters_);
     }
@@ -236,8 +260,7 @@ class Replanner {
   bool MayBeBetter(const Grasp& grasp) const {
     const double epsilon = grasp.quality.epsilon;
     if (!best_ || epsilon > merit_.epsilon) return true;
-    return replan_.grip_copies > 0 &&
-           merit_.sure < replan_.enough_grip - CalcCost(epsilon);
+    return UsesGrip() && merit_.sure < replan_.enough_grip - CalcCost(epsilon);
   }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
@@ -259,27 +282,50 @@ class Replanner {
             ? std::min(kNoGrip,
                        CalcGrip(hand_, grasp, solid_.mass(), parameters_))
             : kNoGrip;
-    if (evaluated.ok() && MayBeBetter(grasp) && Counts(grasp)) {
-      // What is kept is exact.
-      const EvaluatedGrasp exact =
-          CloseAndJudge(hand_, sample.X_NH, q, solid_, parameters_);
-      Note(ToOutcome(exact.failure));
-      if (exact.ok() && Counts(exact.grasp)) {
-        const Grasp timed =
-            TimeFingers(hand_, exact.grasp, solid_, parameters_);
-        const Merit merit = CalcMerit(timed);
-        if (merit > merit_ && Counts(timed) && CanBeReached(timed)) {
-          best_ = timed;
-          merit_ = merit;
-          best_sample_ = sample;
-          ++num_gains_;
-        }
-      }
+    if (keeps_ && evaluated.ok() && MayBeBetter(grasp) && Counts(grasp)) {
+      Consider(sample, grasp);
     }
     return CalcReplanObjective(CalcGoals(grasp), grasp.configuration.q, task_.q,
                                grasp.quality.epsilon,
                                parameters_.hybrid.epsilon_floor, replan_) +
            replan_.grip_weight * grip;
+  }
+
+  // Keeps the grasp if it is the best that counts: by estimate first, since
+  // what is kept must be exact.
+  void Consider(const Sample& sample, const Grasp& estimate) {
+    const Grasp timed = TimeFingers(hand_, estimate, solid_, parameters_,
+                                    Precision::kEstimated);
+    const double share = CalcShare(timed);
+    if (!(MakeMerit(timed, share) > merit_)) return;
+    if (Keep(sample, timed.q_pregrasp, share)) return;
+    // Fingers that are open otherwise may be free, or reach it, exactly.
+    const EvaluatedGrasp exact = CloseAndJudge(
+        hand_, sample.X_NH, estimate.q_pregrasp, solid_, parameters_);
+    Note(ToOutcome(exact.failure));
+    if (!exact.ok()) return;
+    const Grasp other = TimeFingers(hand_, exact.grasp, solid_, parameters_);
+    Keep(sample, other.q_pregrasp, CalcShare(other));
+  }
+
+  double CalcShare(const Grasp& grasp) {
+    return UsesGrip() ? copies_.CalcGripped(grasp, CalcShareToBeat(grasp))
+                      : 0.0;
+  }
+
+  bool Keep(const Sample& sample, const Eigen::VectorXd& q_pregrasp,
+            double share) {
+    const EvaluatedGrasp exact =
+        CloseAndJudge(hand_, sample.X_NH, q_pregrasp, solid_, parameters_);
+    Note(ToOutcome(exact.failure));
+    if (!exact.ok() || !Counts(exact.grasp)) return false;
+    const Merit merit = MakeMerit(exact.grasp, share);
+    if (!(merit > merit_) || !CanBeReached(exact.grasp)) return false;
+    best_ = exact.grasp;
+    merit_ = merit;
+    best_sample_ = sample;
+    ++num_gains_;
+    return true;
   }
 
   bool Counts(const Grasp& grasp) {
@@ -353,8 +399,9 @@ class Replanner {
   const Solid& solid_;
   const Parameters& parameters_;
   const ReplanParameters& replan_;
-  const uint64_t seed_;
   const ReplanOptions options_;
+  bool keeps_{true};  // Whether Evaluate() keeps the best.
+  PerturbedCopies copies_;
   Random random_;
   std::optional<Grasp> best_;
   Merit merit_;         // Of the best …
@@ -429,12 +476,14 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed, const ReplanOptions& options) {
-  std::vector<RigidTransform> starts{task.X_NH};
-  if (parameters.replan.aimed_starts) {
-    starts.push_back(
-        Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
-  }
-  return Replanner(hand, task, solid, parameters, seed, options).Run(starts);
+  return Replanner(hand, task, solid, parameters, seed, options)
+      .Run(MakeStarts(hand.model(), task, parameters));
+}
+
+double CalcPromise(const HandShape& hand, const TransferTask& task,
+                   const Solid& solid, const Parameters& parameters) {
+  return Replanner(hand, task, solid, parameters, 0, {})
+      .RateStarts(MakeStarts(hand.model(), task, parameters));
 }
 
 ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
@@ -445,9 +494,9 @@ ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
   on_whole.q_pregrasp = transferred.q_pregrasp;
   std::vector<RigidTransform> starts{transferred.configuration.X_OH};
   if (parameters.replan.aimed_starts) {
-    starts.push_back(task.X_NH);
-    starts.push_back(
-        Confine(FitWrist(hand.model(), task), task.X_NH, parameters.transfer));
+    for (const auto& X_NH : MakeStarts(hand.model(), task, parameters)) {
+      starts.push_back(X_NH);
+    }
   } else if (PalmCollides(hand, starts[0], transferred.q_pregrasp, whole)) {
     return {TransferOutcome::kPalmCollision, std::nullopt};
   }

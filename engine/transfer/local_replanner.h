@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/parallel.h"
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
 #include "engine/parameters/parameters.h"
@@ -47,7 +48,11 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 /** What replanning is to reach. */
 struct ReplanOptions {
   bool climb{true};  ///< Not only a grasp that counts but the best around it.
+  bool grip{true};   ///< Whether disturbed copies choose; else ε does.
   double epsilon_to_beat{0.0};  ///< What open-close reaches.
+  /** Whether to go on; may be empty. Once it says no, the result is of no
+   account. */
+  Wanted wanted{};
 };
 
 /** Local replanning: simulated annealing on Eq. (6), from T* X_EH and, with
@@ -61,6 +66,11 @@ struct ReplanOptions {
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed, const ReplanOptions& options = {});
+
+/** How well a task's starts do before any search: the least value of Eq. (6),
+ infinity when all collide. Tasks with little of it need little replanning. */
+double CalcPromise(const HandShape& hand, const TransferTask& task,
+                   const Solid& solid, const Parameters& parameters);
 
 /** Assembly: the grasp of the part on the whole object, replanned there from
  where it is and, with aimed_starts, from T* X_EH and FitWrist(). Without them,

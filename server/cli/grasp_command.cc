@@ -24,7 +24,10 @@ void AddGrasp(Subcommands& commands) {
   command->add_option("--part", order->part_labels, "parts to grasp (all)");
   command->add_option("--task", order->task, "grasp parts that serve it");
   command->add_option("--hand", order->hand, "hand")->capture_default_str();
-  command->add_option("--count", extra->count, "most grasps, best first");
+  command->add_option("--count", extra->count,
+                      "most grasps, best first; stops at so many sure ones");
+  command->add_flag("--exhaustive", order->exhaustive,
+                    "try all sources though --count is given");
   command->add_option("--sources", order->sources, "source grasps per part")
       ->capture_default_str();
   command->add_option("--friction", extra->friction, "coefficient");

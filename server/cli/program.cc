@@ -18,6 +18,7 @@ Result<std::unique_ptr<Service>> Program::MakeService(
   decoder.allow_unsandboxed = options_.allow_unsandboxed;
   ServiceOptions service;
   service.threads = options_.threads;
+  service.max_queued_jobs = options_.max_queued_jobs;
   return std::make_unique<Service>(std::move(store),
                                    std::make_unique<Decoder>(decoder), service);
 }

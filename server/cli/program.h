@@ -24,6 +24,7 @@ struct Options {
   std::string decoder;
   bool allow_unsandboxed{false};
   int threads{0};
+  int64_t max_queued_jobs{ServiceOptions().max_queued_jobs};
   bool json{false};
 };
 

@@ -67,6 +67,7 @@ class RemoteBackend : public Backend {
         .Add("task", order.task)
         .Add("hand", order.hand)
         .Add("count", order.count ? std::to_string(*order.count) : "")
+        .Add("exhaustive", order.exhaustive ? "true" : "")
         .Add("sources", std::to_string(order.sources))
         .Add("stage", ToString(order.stage))
         .Add("seed", std::to_string(order.seed))

@@ -27,6 +27,10 @@ void AddServe(Subcommands& commands) {
   AddSetting(command, "--max-upload-bytes", config->max_upload_bytes,
              "largest mesh")
       ->capture_default_str();
+  AddSetting(command, "--max-queued-jobs", commands.options.max_queued_jobs,
+             "jobs that may wait, slow ones and others each")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   AddSetting(command, "--wait", *wait, "seconds that POST /v1/grasps waits")
       ->check(CLI::Range(0, 600))
       ->capture_default_str();

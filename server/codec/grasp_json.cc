@@ -184,6 +184,33 @@ Json Encode(const StoredAttempt& attempt, GraspStage wanted) {
   return json;
 }
 
+Json EncodeOverview(const StoredTransfer& transfer) {
+  Json json;
+  json["id"] = transfer.id;
+  json["object"] = transfer.object_id;
+  json["example"] = transfer.example_id;
+  json["category"] = transfer.category;
+  json["hand"] = transfer.hand;
+  json["stage"] = ToString(transfer.stage);
+  json["parts"] = transfer.part_labels;
+  json["keep_free"] = transfer.keep_free;
+  json["sources_per_part"] = transfer.sources_per_part;
+  json["similarity"] = transfer.similarity;
+  json["complete"] = transfer.complete;
+  json["enough"] = OrNull(transfer.enough);
+  json["summary"] = EncodeSummary(transfer);
+  json["warnings"] = transfer.warnings;
+  json["seconds"] = Json::object();
+  for (const auto& [stage, seconds] : transfer.seconds) {
+    json["seconds"][stage] = seconds;
+  }
+  json["provenance"]["engine_version"] = transfer.engine_version;
+  json["provenance"]["parameters_hash"] = transfer.parameters_hash;
+  json["provenance"]["seed"] = transfer.seed;
+  json["created_at"] = transfer.created_at;
+  return json;
+}
+
 }  // namespace
 
 std::string ToJson(const StoredGrasp& grasp, const HandModel& hand) {
@@ -207,6 +234,7 @@ std::string ToJson(const TransferAnswer& answer) {
   json["example"]["similarity"] = transfer.similarity;
   json["summary"] = EncodeSummary(transfer);
   json["complete"] = transfer.complete;
+  json["enough"] = OrNull(transfer.enough);
   json["grasps"] = Json::array();
   for (const StoredGrasp& grasp : answer.grasps) {
     json["grasps"].push_back(Encode(grasp, *answer.hand));
@@ -217,19 +245,7 @@ std::string ToJson(const TransferAnswer& answer) {
 }
 
 std::string ToJson(const StoredTransfer& transfer) {
-  Json json;
-  json["id"] = transfer.id;
-  json["object"] = transfer.object_id;
-  json["example"] = transfer.example_id;
-  json["category"] = transfer.category;
-  json["hand"] = transfer.hand;
-  json["stage"] = ToString(transfer.stage);
-  json["parts"] = transfer.part_labels;
-  json["keep_free"] = transfer.keep_free;
-  json["sources_per_part"] = transfer.sources_per_part;
-  json["similarity"] = transfer.similarity;
-  json["complete"] = transfer.complete;
-  json["summary"] = EncodeSummary(transfer);
+  Json json = EncodeOverview(transfer);
   json["contact_maps"] = Json::array();
   for (const StoredContactMap& map : transfer.contact_maps) {
     json["contact_maps"].push_back(Encode(map));
@@ -238,17 +254,12 @@ std::string ToJson(const StoredTransfer& transfer) {
   for (const StoredAttempt& attempt : transfer.attempts) {
     json["attempts"].push_back(Encode(attempt, transfer.stage));
   }
-  json["warnings"] = transfer.warnings;
-  json["seconds"] = Json::object();
-  for (const auto& [stage, seconds] : transfer.seconds) {
-    json["seconds"][stage] = seconds;
-  }
   json["parameters"] = Parsed(transfer.parameters);
-  json["provenance"]["engine_version"] = transfer.engine_version;
-  json["provenance"]["parameters_hash"] = transfer.parameters_hash;
-  json["provenance"]["seed"] = transfer.seed;
-  json["created_at"] = transfer.created_at;
   return DumpJson(json);
+}
+
+std::string ToSummaryJson(const StoredTransfer& transfer) {
+  return DumpJson(EncodeOverview(transfer));
 }
 
 }  // namespace graspdb

@@ -429,6 +429,7 @@ std::string ToJson(const TransferOrder& order) {
   json["task"] = order.task;
   json["hand"] = order.hand;
   json["count"] = order.count ? Json(*order.count) : Json(nullptr);
+  json["exhaustive"] = order.exhaustive;
   json["sources"] = order.sources;
   json["stage"] = ToString(order.stage);
   json["parameters"] = Json::parse(ParametersToJson(order.parameters));
@@ -476,6 +477,7 @@ Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text) {
     fields.ReadInteger("count", number, 1, INT_MAX);
     order.count = number;
   }
+  fields.Read("exhaustive", order.exhaustive);
   fields.ReadInteger("sources", order.sources, 1, INT_MAX);
   fields.Read("stage", stage);
   ReadParameters(fields, order.parameters);

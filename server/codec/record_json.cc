@@ -259,6 +259,7 @@ std::string ToJson(const StoredJob& job) {
   json["progress"] = job.progress;
   json["stage"] = job.stage;
   json["eta_s"] = OrNull(job.eta_seconds);
+  json["grasps_found"] = OrNull(job.grasps_found);
   json["result"] = EncodeJobResult(job);
   json["error"] = Encode(job.error);
   json["created_at"] = job.created_at;

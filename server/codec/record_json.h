@@ -42,5 +42,7 @@ std::string ToJson(const TransferAnswer& answer);
 /** GET /v1/transfers/{id}: each source grasp, how it ended and why, alignments,
  parameters, times. */
 std::string ToJson(const StoredTransfer& transfer);
+/** An item of GET /v1/transfers: without attempts, alignments, parameters. */
+std::string ToSummaryJson(const StoredTransfer& transfer);
 
 }  // namespace graspdb

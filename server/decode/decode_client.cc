@@ -165,25 +165,32 @@ TalkEnd Talk(int socket, std::span<const uint8_t> head,
   }
 }
 
-Error DescribeEnd(int status, const DecoderOptions& options) {
+// Without an answer.
+Error DescribeEnd(int status, const DecoderOptions& options,
+                  DecodeCounts& counts) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    ++counts.timed_out;
     return MakeMeshError(fmt::format(
         "the decoder gave up after {:.3g} s of computing", options.deadline));
   }
   if (WIFSIGNALED(status)) {
+    ++counts.crashed;
     return MakeMeshError(fmt::format(
         "the decoder crashed on the mesh (signal {})", WTERMSIG(status)));
   }
   // What a shell and the dynamic linker say about a program that cannot run.
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+    ++counts.unstarted;
     return MakeStartError(options.helper, "a library is missing");
   }
+  ++counts.crashed;
   return MakeMeshError("the decoder stopped without an answer");
 }
 
 Result<DecodeAnswer> RunHelper(const DecoderOptions& options,
                                std::span<const uint8_t> head,
-                               std::span<const uint8_t> body) {
+                               std::span<const uint8_t> body,
+                               DecodeCounts& counts) {
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.deadline));
@@ -194,12 +201,14 @@ Result<DecodeAnswer> RunHelper(const DecoderOptions& options,
 
   int sockets[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) {
+    ++counts.unstarted;
     return MakeStartError(options.helper, std::strerror(errno));
   }
   FileDescriptor ours(sockets[0]);
   FileDescriptor theirs(sockets[1]);
   pid_t pid = -1;
   if (const int error_number = Spawn(command, theirs.get(), &pid)) {
+    ++counts.unstarted;
     return MakeStartError(options.helper, std::strerror(error_number));
   }
   Child child(pid);
@@ -208,16 +217,25 @@ Result<DecodeAnswer> RunHelper(const DecoderOptions& options,
   std::vector<uint8_t> bytes;
   switch (Talk(ours.get(), head, body, deadline, &bytes)) {
     case TalkEnd::kDeadline:
+      ++counts.timed_out;
       return MakeMeshError(
           fmt::format("the decoder gave up after {:.3g} s", options.deadline));
     case TalkEnd::kTooMuch:
+      ++counts.crashed;
       return MakeMeshError("the decoded mesh is too large");
     case TalkEnd::kAnswered:
       break;
   }
   const int status = child.End();
   auto answer = ParseAnswer(bytes);
-  if (!answer) return DescribeEnd(status, options);
+  if (!answer) return DescribeEnd(status, options, counts);
+  if (answer->has_value()) {
+    ++counts.admitted;
+  } else if (answer->error().code == ErrorCode::kInternal) {
+    ++counts.unstarted;
+  } else {
+    ++counts.refused;
+  }
   return *std::move(answer);
 }
 
@@ -240,7 +258,10 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
                              bytes.size(), request.limits.max_bytes),
                  "Decimate the mesh first.", "mesh"};
   }
-  GRASPDB_TRY(answer, RunHelper(options_, EncodeRequest(request), bytes));
+  DecodeCounts counts;
+  auto result = RunHelper(options_, EncodeRequest(request), bytes, counts);
+  Add(counts);
+  GRASPDB_TRY(answer, std::move(result));
   const MassProperties mass = CalcMassProperties(answer.mesh_O);
   return DecodedMesh{std::move(answer.mesh_O),  std::move(answer.work_O),
                      std::move(answer.repairs), mass,
@@ -255,11 +276,27 @@ Result<std::string> Decoder::Check() const {
                         kTetrahedron.size());
   DecodeRequest request;
   request.format = MeshFormat::kObj;
-  auto answer = RunHelper(options_, EncodeRequest(request), bytes);
+  DecodeCounts of_no_account;
+  auto answer =
+      RunHelper(options_, EncodeRequest(request), bytes, of_no_account);
   if (answer) return std::move(answer->confinement);
   Error error = answer.error();
   error.code = ErrorCode::kInternal;
   return error;
+}
+
+DecodeCounts Decoder::counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts_;
+}
+
+void Decoder::Add(const DecodeCounts& counts) const {
+  const std::lock_guard lock(mutex_);
+  counts_.admitted += counts.admitted;
+  counts_.refused += counts.refused;
+  counts_.crashed += counts.crashed;
+  counts_.timed_out += counts.timed_out;
+  counts_.unstarted += counts.unstarted;
 }
 
 }  // namespace graspdb

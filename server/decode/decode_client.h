@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,15 @@ struct DecodedMesh {
   std::optional<DecodedCloud> cloud{};  ///< Unset for a mesh.
 };
 
+/** What became of the mesh files since the program started. */
+struct DecodeCounts {
+  int64_t admitted{0};
+  int64_t refused{0};    ///< By the helper, with a reason.
+  int64_t crashed{0};    ///< The helper died, or talked nonsense.
+  int64_t timed_out{0};  ///< It missed the deadline.
+  int64_t unstarted{0};  ///< It could not be started or confined.
+};
+
 /** Admits mesh files without ever touching their bytes: a confined helper
  program decodes, repairs and decimates one mesh and dies. Thread-safe. */
 class Decoder {
@@ -52,8 +62,14 @@ class Decoder {
    @retval kInternal as Decode(). */
   Result<std::string> Check() const;
 
+  DecodeCounts counts() const;
+
  private:
+  void Add(const DecodeCounts& counts) const;
+
   DecoderOptions options_;
+  mutable std::mutex mutex_;
+  mutable DecodeCounts counts_;
 };
 
 }  // namespace graspdb

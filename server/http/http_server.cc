@@ -32,6 +32,7 @@ struct Exchange {
   MessageHead head;
   std::optional<HeadFault> fault;  ///< Instead of the head.
   std::string id;
+  std::string pattern;  ///< Of the route that answered.
   Clock::time_point begin{Clock::now()};
   int status{0};
   size_t bytes_in{0};
@@ -142,6 +143,8 @@ struct HttpServer::Impl : httplib::Server {
   void RequestStop();
   void ServeExchange(Connection& connection, Exchange& exchange);
   void Answer(const httplib::ContentReader* reader, httplib::Response& out);
+  static void Stream(HttpResponse response, Exchange& exchange,
+                     httplib::Response& out);
   HttpResponse Route(Exchange& exchange, const httplib::ContentReader* reader);
   HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
                       HttpRequest& request,
@@ -231,11 +234,17 @@ void HttpServer::Impl::ServeExchange(Connection& connection,
           ? found->second
           : MakeRequestId();
   current_exchange = &exchange;
+  if (options.metrics) options.metrics->Begin();
   LibraryStream stream(MakeLibraryHead(exchange.head), connection);
   bool closed = false;
   const bool sent = process_request(stream, false, closed, nullptr);
   current_exchange = nullptr;
   if (!sent || !connection.AtMessageEnd()) exchange.close = true;
+  if (options.metrics) {
+    options.metrics->End({exchange.head.method, exchange.pattern,
+                          exchange.status,
+                          CalcMilliseconds(exchange.begin) * 1e-3});
+  }
   Log(fmt::format(
       "time={} level=info event=request id={} method={} "
       "target=\"{}\" status={} in={} out={} ms={:.1f}{}",
@@ -263,11 +272,33 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
   }
   exchange.status = response.status;
   exchange.bytes_out = response.body.size();
-  if (response.status != 204) {
+  if (response.next_piece) {
+    Stream(std::move(response), exchange, out);
+  } else if (response.status != 204) {
     out.set_header("Content-Type", response.content_type);
     out.body = std::move(response.body);
   }
   if (!exchange.connection->AtMessageEnd()) exchange.close = true;
+}
+
+void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
+                              httplib::Response& out) {
+  const auto send = [next = std::move(response.next_piece), &exchange](
+                        size_t, httplib::DataSink& sink) {
+    const auto piece = next();
+    if (!piece) {
+      sink.done();
+      return true;
+    }
+    exchange.bytes_out += piece->size();
+    return sink.write(piece->data(), piece->size());
+  };
+  // HTTP/1.0 has no chunks: there the connection's end is the body's.
+  if (exchange.head.http_1_0) {
+    out.set_content_provider(response.content_type, send);
+  } else {
+    out.set_chunked_content_provider(response.content_type, send);
+  }
 }
 
 HttpResponse HttpServer::Impl::Route(Exchange& exchange,
@@ -305,6 +336,7 @@ HttpResponse HttpServer::Impl::Route(Exchange& exchange,
     response.headers.emplace_back("Allow", allowed);
     return response;
   }
+  exchange.pattern = match.route->pattern;
   request.path_parameters = std::move(match.path_parameters);
   request.query = target->query;
   request.headers = exchange.head.fields;

@@ -7,6 +7,7 @@
 
 #include "engine/base/result.h"
 #include "server/http/limits.h"
+#include "server/http/request_metrics.h"
 #include "server/http/router.h"
 
 namespace graspdb {
@@ -30,6 +31,8 @@ struct HttpServerOptions {
   /** Receives one line, without line break, per answer and per event. Called
    from many threads at once. */
   std::function<void(const std::string&)> log;
+  /** Counts the requests; may be null. */
+  std::shared_ptr<RequestMetrics> metrics;
 };
 
 /** Answers HTTP/1.1 requests from a Router. The only user of the HTTP library,

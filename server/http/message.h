@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -52,6 +53,9 @@ struct HttpResponse {
   TextPairs headers{};  ///< Beside those that the server itself sets.
   /** Stages with their milliseconds, for Server-Timing. */
   std::vector<std::pair<std::string, double>> timings{};
+  /** Instead of `body`, a body that comes in pieces: the next one, waited for
+   as long as it takes, or nothing at its end. Called by one thread. */
+  std::function<std::optional<std::string>()> next_piece{};
 };
 
 }  // namespace graspdb

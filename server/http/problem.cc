@@ -52,6 +52,11 @@ ProblemKind KindOf(ErrorCode code) {
       return {"deadline_exceeded", "The time allowed ran out", 503, true};
     case ErrorCode::kStorage:
       return {"storage", "The database cannot be written or read", 507, true};
+    case ErrorCode::kOverloaded:
+      return {"overloaded", "Too much is asked for at once", 503, true};
+    case ErrorCode::kKeyReused:
+      return {"key_reused", "The Idempotency-Key stands for another request",
+              422, false};
     case ErrorCode::kNotImplemented:
       return {"not_implemented", "Announced, but not built yet", 501, false};
     case ErrorCode::kInternal:
@@ -96,6 +101,8 @@ std::span<const ProblemKind> AllProblemKinds() {
       KindOf(ErrorCode::kCancelled),
       KindOf(ErrorCode::kDeadlineExceeded),
       KindOf(ErrorCode::kStorage),
+      KindOf(ErrorCode::kOverloaded),
+      KindOf(ErrorCode::kKeyReused),
       KindOf(ErrorCode::kNotImplemented),
       KindOf(ErrorCode::kInternal),
       KindOf(HttpFault::kMalformedRequest),

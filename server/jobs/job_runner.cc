@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "server/codec/input_json.h"
+#include "server/codec/record_json.h"
 #include "server/jobs/service.h"
 #include "server/jobs/sub_context.h"
 
@@ -73,9 +74,21 @@ void JobRunner::AddLiveState(StoredJob& job) const {
   const LiveJob& live = found->second;
   job.stage = live.stage;
   job.progress = live.progress;
+  if (job.kind == JobKind::kTransfer) {
+    job.grasps_found = static_cast<int64_t>(live.grasps.size());
+  }
   if (live.progress < kLeastProgressForEta) return;
   const std::chrono::duration<double> elapsed = Clock::now() - live.started;
   job.eta_seconds = elapsed.count() * (1.0 - live.progress) / live.progress;
+}
+
+std::vector<LiveGrasp> JobRunner::ReadLiveGrasps(const std::string& id,
+                                                 size_t first) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = live_.find(id);
+  if (found == live_.end() || first >= found->second.grasps.size()) return {};
+  return {found->second.grasps.begin() + static_cast<std::ptrdiff_t>(first),
+          found->second.grasps.end()};
 }
 
 Result<StoredJob> JobRunner::Cancel(const std::string& id) {
@@ -185,12 +198,8 @@ Result<std::string> JobRunner::Execute(const StoredJob& job,
         if (!spaces) return spaces.error();
         return order.object_id;
       }
-      case JobKind::kTransfer: {
-        GRASPDB_TRY(order, StoredTransferOrderFromJson(job.request));
-        order.mesh.bytes = std::move(payload);
-        GRASPDB_TRY(answer, service_.TransferGrasps(order, context));
-        return answer.transfer.id;
-      }
+      case JobKind::kTransfer:
+        return ExecuteTransfer(job, std::move(payload), context);
     }
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),
@@ -217,6 +226,24 @@ Result<std::string> JobRunner::ExecuteImport(const StoredJob& job,
     if (!spaces) return spaces.error();
   }
   return imported.object.id;
+}
+
+Result<std::string> JobRunner::ExecuteTransfer(const StoredJob& job,
+                                               std::string payload,
+                                               ExecutionContext& context) {
+  GRASPDB_TRY(order, StoredTransferOrderFromJson(job.request));
+  order.mesh.bytes = std::move(payload);
+  GRASPDB_TRY(hand, service_.FindHandModel(order.hand));
+  GRASPDB_TRY(answer, service_.TransferGrasps(
+                          order, context, [&](const StoredGrasp& grasp) {
+                            LiveGrasp live{grasp.id, ToJson(grasp, *hand)};
+                            {
+                              const std::lock_guard lock(mutex_);
+                              live_[job.id].grasps.push_back(std::move(live));
+                            }
+                            Notify();
+                          }));
+  return answer.transfer.id;
 }
 
 }  // namespace graspdb

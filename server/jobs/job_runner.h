@@ -17,6 +17,7 @@
 namespace graspdb {
 
 class Service;
+struct LiveGrasp;
 
 /** Takes jobs from the store and carries them out by the service's verbs, one
  after the other in each of its two threads: slow ones, and those someone waits
@@ -37,6 +38,10 @@ class JobRunner {
   Result<StoredJob> Find(const std::string& id) const;
   /** Adds progress, stage and eta to a job that runs here. */
   void AddLiveState(StoredJob& job) const;
+  /** What a running transfer has found, in the order of finding, from the
+   `first`-th on. Empty when it does not run here. */
+  std::vector<LiveGrasp> ReadLiveGrasps(const std::string& id,
+                                        size_t first) const;
   Result<StoredJob> Cancel(const std::string& id);
   /** Returns when `enough(job)`, or after the timeout. */
   template <class F>
@@ -52,6 +57,7 @@ class JobRunner {
     Clock::time_point started;
     std::shared_ptr<ExecutionContext> context;
     bool cancelled_by_user{false};
+    std::vector<LiveGrasp> grasps{};
   };
 
   void Work(bool slow);
@@ -61,6 +67,8 @@ class JobRunner {
   Result<std::string> ExecuteImport(const StoredJob& job,
                                     const std::string& payload,
                                     ExecutionContext& context);
+  Result<std::string> ExecuteTransfer(const StoredJob& job, std::string payload,
+                                      ExecutionContext& context);
   // Something that waiters may wait for has changed.
   void Notify();
 

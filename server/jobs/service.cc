@@ -94,6 +94,8 @@ Service::~Service() = default;
 
 Result<std::string> Service::CheckDecoder() const { return decoder_->Check(); }
 
+DecodeCounts Service::CountDecoded() const { return decoder_->counts(); }
+
 Result<StoredCategory> Service::AddCategory(const StoredCategory& category) {
   GRASPDB_TRY_VOID(CheckCategory(category));
   return store_->InsertCategory(category);
@@ -200,7 +202,8 @@ Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
   GRASPDB_TRY(checked, CheckImport(order));
   const bool slow = checked.role == ObjectRole::kExample && checked.learn;
   GRASPDB_TRY(job, store_->InsertJob(JobKind::kImport, slow, ToJson(checked),
-                                     checked.bytes, idempotency_key));
+                                     checked.bytes, idempotency_key,
+                                     options_.max_queued_jobs));
   runner_->Wake();
   return job;
 }
@@ -208,8 +211,9 @@ Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
 Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
                                        const std::string& idempotency_key) {
   GRASPDB_TRY_VOID(CheckLearn(order));
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kLearn, true, ToJson(order), "",
-                                     idempotency_key));
+  GRASPDB_TRY(job,
+              store_->InsertJob(JobKind::kLearn, true, ToJson(order), "",
+                                idempotency_key, options_.max_queued_jobs));
   runner_->Wake();
   return job;
 }
@@ -218,7 +222,8 @@ Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
                                           const std::string& idempotency_key) {
   GRASPDB_TRY(checked, CheckTransfer(order));
   GRASPDB_TRY(job, store_->InsertJob(JobKind::kTransfer, false, ToJson(checked),
-                                     checked.mesh.bytes, idempotency_key));
+                                     checked.mesh.bytes, idempotency_key,
+                                     options_.max_queued_jobs));
   runner_->Wake();
   return job;
 }
@@ -244,8 +249,14 @@ Result<StoredJob> Service::WaitForChange(
     const StoredJob& seen, std::chrono::milliseconds timeout) const {
   return runner_->WaitUntil(seen.id, timeout, [&](const StoredJob& job) {
     return job.state != seen.state || job.stage != seen.stage ||
-           job.progress != seen.progress;
+           job.progress != seen.progress ||
+           job.grasps_found != seen.grasps_found;
   });
+}
+
+std::vector<LiveGrasp> Service::ReadLiveGrasps(const std::string& job_id,
+                                               size_t first) const {
+  return runner_->ReadLiveGrasps(job_id, first);
 }
 
 Result<StoredJob> Service::CancelJob(const std::string& id) {

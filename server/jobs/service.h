@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -23,6 +24,7 @@
 namespace graspdb {
 
 class Decoder;
+struct DecodeCounts;
 class JobRunner;
 struct DecodedMesh;
 
@@ -44,6 +46,7 @@ struct ServiceOptions {
   int threads{0};  ///< Of the engine; 0: as many as there are cores.
   int64_t max_mesh_bytes{kMostFileBytes};
   int64_t max_triangles{400'000};
+  int64_t max_queued_jobs{100};  ///< Beyond it new ones are refused.
 };
 
 /** What an import led to. */
@@ -69,6 +72,14 @@ struct VerifiedGrasp {
   PhysicalVerdict verdict;
 };
 
+/** A grasp that a running transfer has found and not stored yet. */
+struct LiveGrasp {
+  std::string id;
+  std::string json;  ///< As it will be answered once stored.
+};
+
+using GraspCallback = std::function<void(const StoredGrasp&)>;
+
 /** The verbs of the application, without HTTP: what the server's routes and the
  command line both call. Thread-safe. Each error says in its hint what to do
  next; http/problem.cc maps its code to a status. */
@@ -89,6 +100,7 @@ class Service {
 
   /** Whether meshes can be decoded, and how the helper is confined. */
   Result<std::string> CheckDecoder() const;
+  DecodeCounts CountDecoded() const;
 
   // ---- Immediate verbs ------------------------------------------------------
   /** Checks names and labels, then stores.
@@ -124,9 +136,12 @@ class Service {
   Result<std::vector<StoredGraspSpace>> LearnObject(const LearnOrder& order,
                                                     ExecutionContext& context);
   /** Maps, replans, assembles, stores; a transfer with the same inputs is
-   answered from the store. */
+   answered from the store.
+   @param on_grasp  Hears of each grasp of the stage asked for as it is found,
+     before it is stored: from the computing threads, one at a time. */
   Result<TransferAnswer> TransferGrasps(const TransferOrder& order,
-                                        ExecutionContext& context);
+                                        ExecutionContext& context,
+                                        const GraspCallback& on_grasp = {});
   /** The answer to a stored transfer. @param count  As in TransferOrder. */
   Result<TransferAnswer> DescribeTransfer(const std::string& transfer_id,
                                           std::optional<int> count) const;
@@ -155,10 +170,14 @@ class Service {
    first, the job as it then is. */
   Result<StoredJob> WaitForJob(const std::string& id,
                                std::chrono::milliseconds timeout) const;
-  /** Returns when the job differs from `seen` in state, stage or progress, has
-   finished, or after the timeout: for server-sent events. */
+  /** Returns when the job differs from `seen` in state, stage, progress or
+   grasps found, has finished, or after the timeout. */
   Result<StoredJob> WaitForChange(const StoredJob& seen,
                                   std::chrono::milliseconds timeout) const;
+  /** What a running transfer has found, in the order of finding, from the
+   `first`-th on; empty when it does not run. */
+  std::vector<LiveGrasp> ReadLiveGrasps(const std::string& job_id,
+                                        size_t first) const;
   /** A queued job is cancelled at once, a running one within moments, one that
    has finished stays as it is. */
   Result<StoredJob> CancelJob(const std::string& id);

@@ -23,8 +23,10 @@ double CalcSecondsSince(ExecutionContext::Clock::time_point start) {
 
 // The row of the transfer before it ran.
 StoredTransfer DescribeTransferRow(const TransferOrder& order,
-                                   const TransferPlan& plan) {
+                                   const TransferPlan& plan,
+                                   std::optional<int> enough) {
   StoredTransfer row;
+  row.enough = enough;
   row.object_id = plan.novel.id;
   row.example_id = plan.alignment.example_id;
   row.category = plan.novel.category;
@@ -49,6 +51,7 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
   }
   for (const std::string& label : plan.wanted) content += " wants " + label;
   for (const std::string& label : row.keep_free) content += " frees " + label;
+  if (row.enough) content += fmt::format(" until {}", *row.enough);
   row.id = MakeContentId(content);
   return row;
 }
@@ -187,9 +190,8 @@ class RowMaker {
 
   const std::vector<StoredGrasp>& grasps() const { return grasps_; }
 
- private:
-  std::string AddGrasp(const TransferRecord& record, const Grasp& grasp,
-                       GraspStage stage, int index) {
+  StoredGrasp MakeGrasp(const TransferRecord& record, const Grasp& grasp,
+                        GraspStage stage, int index) const {
     const auto part = static_cast<size_t>(record.part);
     const bool whole = stage == GraspStage::kAssembly;
     const Grasp& source =
@@ -223,7 +225,16 @@ class RowMaker {
     row.transfer_id = transfer_.id;
     row.source_grasp_id = MakeGraspId(row.grasp_space_id, GraspStage::kLearned,
                                       record.source_grasp);
-    grasps_.push_back(std::move(row));
+    row.engine_version = transfer_.engine_version;
+    row.parameters_hash = transfer_.parameters_hash;
+    row.seed = transfer_.seed;
+    return row;
+  }
+
+ private:
+  std::string AddGrasp(const TransferRecord& record, const Grasp& grasp,
+                       GraspStage stage, int index) {
+    grasps_.push_back(MakeGrasp(record, grasp, stage, index));
     return grasps_.back().id;
   }
 
@@ -310,13 +321,20 @@ Result<StoredObject> Service::FindTransferObject(const TransferOrder& order,
 }
 
 Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
-                                               ExecutionContext& context) {
+                                               ExecutionContext& context,
+                                               const GraspCallback& on_grasp) {
   const auto start = ExecutionContext::Clock::now();
   GRASPDB_TRY(checked, CheckTransfer(order));
   GRASPDB_TRY(novel, FindTransferObject(checked, context));
   GRASPDB_TRY(plan, MakeTransferPlan(*store_, checked, novel, context));
-  StoredTransfer row = DescribeTransferRow(checked, plan);
-  if (const auto known = store_->FindTransfer(row.id); known) {
+  // One that tried all sources answers any count.
+  StoredTransfer row = DescribeTransferRow(checked, plan, std::nullopt);
+  bool known = store_->FindTransfer(row.id).has_value();
+  if (!known && order.count && !order.exhaustive) {
+    row = DescribeTransferRow(checked, plan, order.count);
+    known = store_->FindTransfer(row.id).has_value();
+  }
+  if (known) {
     context.ReportProgress("known", 1.0);
     return DescribeTransfer(row.id, order.count);
   }
@@ -325,13 +343,25 @@ Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
   GRASPDB_TRY(hand, FindHandModel(order.hand));
   GRASPDB_TRY(request,
               MakeRequest(*store_, checked, plan, hand, options_.threads));
+  request.enough = row.enough;
+  RowMaker rows(plan, request, row);
+  if (on_grasp) {
+    request.on_record = [&](int index, const TransferRecord& record) {
+      const bool whole = row.stage == GraspStage::kAssembly;
+      const auto& grasp = whole ? record.assembled : record.transferred;
+      if (grasp) on_grasp(rows.MakeGrasp(record, *grasp, row.stage, index));
+    };
+  }
   const auto transfer_start = ExecutionContext::Clock::now();
   SubContext transferring(context, "transfer", kImportShare, 0.98);
   GRASPDB_TRY(result, Transfer(request, transferring.context()));
   row.seconds.emplace_back("transfer", CalcSecondsSince(transfer_start));
 
+  if (!result.complete && context.Cancelled()) {
+    return Error{ErrorCode::kCancelled, "The transfer was cancelled.",
+                 "send the request again"};
+  }
   row.complete = result.complete;
-  RowMaker rows(plan, request, row);
   rows.AddMaps(result.alignments);
   for (size_t i = 0; i < result.records.size(); ++i) {
     rows.Add(result.records[i], static_cast<int>(i));

@@ -223,6 +223,7 @@ Result<TransferOrder> ReadTransferOrder(const HttpRequest& request,
   if (const auto count = query.Integer("count", 1, 1000)) {
     order.count = static_cast<int>(*count);
   }
+  order.exhaustive = query.Boolean("exhaustive").value_or(false);
   order.sources =
       static_cast<int>(query.Integer("sources", 1, 1000).value_or(40));
   order.stage = query.Choice("stage", {"transfer", "assembly"}) == "transfer"

@@ -1,3 +1,8 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "server/codec/mesh_writer.h"
 #include "server/codec/record_json.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"
@@ -42,6 +47,30 @@ Result<HttpResponse> GetUrdf(const Service& service,
   return response;
 }
 
+/** A file that the URDF refers to, by its name without folders, in its own
+ format where that is one we write. */
+Result<HttpResponse> GetHandMesh(const Service& service,
+                                 const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(hand,
+              service.store().FindHand(request.path_parameters.at("name")));
+  const std::string& file = request.path_parameters.at("file");
+  const size_t dot = std::min(file.rfind('.'), file.size());
+  const std::string extension = file.substr(std::min(dot + 1, file.size()));
+  const bool stl = extension == "stl" || extension == "STL";
+  for (const auto& [name, mesh] : hand.meshes) {
+    if (name.substr(name.rfind('/') + 1) != file) continue;
+    HttpResponse response = MakeFileResponse(
+        WriteMesh(mesh, stl ? MeshFormat::kStl : MeshFormat::kObj),
+        file.substr(0, dot), stl ? "stl" : "obj");
+    response.headers.emplace_back("Cache-Control", "private, max-age=3600");
+    return response;
+  }
+  return Error{ErrorCode::kNotFound,
+               fmt::format("The hand {} has no mesh {}.", hand.name, file),
+               "GET /v1/hands/{name}/urdf names its meshes.", "file"};
+}
+
 }  // namespace
 
 void AddHandRoutes(Router& router, Service& service) {
@@ -60,6 +89,10 @@ void AddHandRoutes(Router& router, Service& service) {
   router.Add({"GET", "/v1/hands/{name}/urdf", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return GetUrdf(service, request);
+              }});
+  router.Add({"GET", "/v1/hands/{name}/meshes/{file}", BodyKind::kNone,
+              [&service](const HttpRequest& request) {
+                return GetHandMesh(service, request);
               }});
 }
 

@@ -126,20 +126,6 @@ Result<TriangleMesh> FindPartMesh(const Store& store, const std::string& object,
                "part"};
 }
 
-HttpResponse MakeFileResponse(std::string bytes, const std::string& id,
-                              const std::string& format) {
-  HttpResponse response;
-  response.content_type = format == "obj"   ? "model/obj"
-                          : format == "stl" ? "model/stl"
-                          : format == "glb" ? "model/gltf-binary"
-                                            : "application/octet-stream";
-  response.headers.emplace_back(
-      "Content-Disposition",
-      fmt::format("attachment; filename=\"{}.{}\"", id, format));
-  response.body = std::move(bytes);
-  return response;
-}
-
 Result<HttpResponse> GetMesh(const Service& service,
                              const HttpRequest& request) {
   QueryReader query(request.query);
@@ -165,8 +151,12 @@ Result<HttpResponse> GetMesh(const Service& service,
     return MakeFileResponse(WriteMesh(mesh, mesh_format), object.id, format);
   }
   GRASPDB_TRY(meshes, store.ReadObjectMeshes(object.id));
-  return MakeFileResponse(WriteMesh(meshes.canonical, mesh_format), object.id,
-                          format);
+  HttpResponse response = MakeFileResponse(
+      WriteMesh(meshes.canonical, mesh_format), object.id, format);
+  // The parts of an object change; its mesh does not.
+  response.headers.emplace_back("Cache-Control",
+                                "private, max-age=31536000, immutable");
+  return response;
 }
 
 Result<HttpResponse> ListParts(const Service& service,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 
+#include "server/http/request_metrics.h"
 #include "server/http/router.h"
 #include "server/jobs/service.h"
 
@@ -14,6 +16,10 @@ namespace graspdb {
 /** How long POST /v1/grasps waits for its job unless the client says. */
 struct RouteOptions {
   std::chrono::seconds default_wait{60};
+  /** Open at once; each holds one of the server's threads. */
+  int max_event_streams{32};
+  /** What GET /metrics tells of requests; may be null. */
+  std::shared_ptr<RequestMetrics> metrics;
 };
 
 void AddCategoryRoutes(Router& router, Service& service);
@@ -21,11 +27,15 @@ void AddGraspRoutes(Router& router, Service& service,
                     const RouteOptions& options);
 void AddGraspSpaceRoutes(Router& router, Service& service);
 void AddHandRoutes(Router& router, Service& service);
-void AddJobRoutes(Router& router, Service& service);
+void AddJobRoutes(Router& router, Service& service,
+                  const RouteOptions& options);
+void AddMetricsRoutes(Router& router, Service& service,
+                      const RouteOptions& options);
 void AddObjectRoutes(Router& router, Service& service);
 void AddPartRoutes(Router& router, Service& service);
 void AddSystemRoutes(Router& router, Service& service);
 void AddTransferRoutes(Router& router, Service& service);
+void AddViewerRoutes(Router& router);
 
 /** All of them. */
 Router MakeRouter(Service& service, const RouteOptions& options);

@@ -84,8 +84,12 @@ int RunServer(Service& service, const ServerConfig& config) {
   options.limits.max_upload_bytes = config.max_upload_bytes;
   options.threads = config.http_threads;
   options.log = LogLine;
-  HttpServer server(MakeRouter(service, {config.default_wait}),
-                    std::move(options));
+  options.metrics = std::make_shared<RequestMetrics>();
+  RouteOptions routes;
+  routes.metrics = options.metrics;
+  routes.default_wait = config.default_wait;
+  routes.max_event_streams = static_cast<int>(config.http_threads) / 2;
+  HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());
   if (!config.port_file.empty() && !WritePortFile(config.port_file, *port)) {

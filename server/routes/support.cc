@@ -56,6 +56,20 @@ HttpResponse MakeJsonResponse(int status, std::string json) {
   return response;
 }
 
+HttpResponse MakeFileResponse(std::string bytes, const std::string& name,
+                              const std::string& format) {
+  HttpResponse response;
+  response.content_type = format == "obj"   ? "model/obj"
+                          : format == "stl" ? "model/stl"
+                          : format == "glb" ? "model/gltf-binary"
+                                            : "application/octet-stream";
+  response.headers.emplace_back(
+      "Content-Disposition",
+      fmt::format("attachment; filename=\"{}.{}\"", name, format));
+  response.body = std::move(bytes);
+  return response;
+}
+
 Error MakeNotBuilt(const std::string& what) {
   return {ErrorCode::kNotImplemented, fmt::format("{} is not built yet.", what),
           "GET /openapi.json lists what there is."};
@@ -176,7 +190,7 @@ Result<Idempotency> Idempotency::Read(const HttpRequest& request,
   GRASPDB_TRY(reply, store.FindReply(read.key_));
   if (!reply) return read;
   if (reply->request_sha256 != read.request_sha256_) {
-    return Error{ErrorCode::kConflict,
+    return Error{ErrorCode::kKeyReused,
                  "The Idempotency-Key was used for another request.",
                  "Use a new key for each request, the same for its retries.",
                  "Idempotency-Key"};

@@ -20,6 +20,10 @@ namespace graspdb {
 
 HttpResponse MakeJsonResponse(int status, std::string json);
 
+/** A mesh file to keep under `name`.`format`. */
+HttpResponse MakeFileResponse(std::string bytes, const std::string& name,
+                              const std::string& format);
+
 /** 501 for what the contract announces. */
 Error MakeNotBuilt(const std::string& what);
 /** 400 for an upload without a mesh. */
@@ -82,7 +86,8 @@ class Idempotency {
  public:
   /** Holds the key until Keep() or the end.
    @retval kInvalidArgument when the key is malformed.
-   @retval kConflict when it was used for another request, or is in use. */
+   @retval kKeyReused when it was used for another request.
+   @retval kConflict while the first request is being answered. */
   static Result<Idempotency> Read(const HttpRequest& request, Service& service);
 
   /** Empty when the request has none. */

@@ -8,7 +8,6 @@
 #include "server/routes/openapi_document.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"
-#include "server/ui/landing_page.h"
 
 namespace graspdb {
 namespace {
@@ -72,21 +71,9 @@ Router MakeRouter(Service& service, const RouteOptions& options) {
   AddGraspRoutes(router, service, options);
   AddTransferRoutes(router, service);
   AddHandRoutes(router, service);
-  AddJobRoutes(router, service);
-  std::vector<Operation> operations;
-  for (const Route& route : router.routes()) {
-    operations.push_back({route.method, route.pattern});
-  }
-  router.Add({"GET", "/", BodyKind::kNone,
-              [page = MakeLandingPage(operations)](const HttpRequest&) {
-                HttpResponse response;
-                response.content_type = "text/html; charset=utf-8";
-                response.headers.emplace_back(
-                    "Content-Security-Policy",
-                    "default-src 'none'; style-src 'unsafe-inline'");
-                response.body = page;
-                return response;
-              }});
+  AddJobRoutes(router, service, options);
+  AddMetricsRoutes(router, service, options);
+  AddViewerRoutes(router);
   return router;
 }
 

@@ -108,6 +108,14 @@ void Statement::BindNext(const std::optional<double>& value) {
   }
 }
 
+void Statement::BindNext(const std::optional<int>& value) {
+  if (value) {
+    BindNext(*value);
+  } else {
+    ++next_parameter_;  // Parameters start as NULL.
+  }
+}
+
 Statement& Statement::BindTextOrNull(const std::string& text) {
   if (text.empty()) {
     ++next_parameter_;

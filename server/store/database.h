@@ -93,6 +93,7 @@ class Statement {
   void BindNext(const std::string& value);
   void BindNext(const char* value) { BindNext(std::string(value)); }
   void BindNext(const std::optional<double>& value);
+  void BindNext(const std::optional<int>& value);
 
   Database* database_;
   std::string sql_;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <utility>
 
@@ -16,6 +15,7 @@ using store::CheckPage;
 using store::Filter;
 using store::InsertGrasp;
 using store::InsertParameterSet;
+using store::ReadRowCursor;
 using store::Throw;
 using store::Unwrap;
 
@@ -223,15 +223,8 @@ Result<Page<StoredGraspSpace>> Store::ListGraspSpaces(
     const GraspSpaceFilter& filter, const PageRequest& page) const {
   return impl_->Read([&](Database& database) {
     CheckPage(page);
-    int64_t after = 0;
-    const char* end = page.cursor.data() + page.cursor.size();
-    if (!page.cursor.empty() &&
-        std::from_chars(page.cursor.data(), end, after).ptr != end) {
-      Throw(ErrorCode::kInvalidArgument, "The cursor is not of this list.",
-            "use next_cursor of the page before", "cursor");
-    }
     Filter where;
-    where.AddValues("s.rowid > ?", after);
+    where.AddValues("s.rowid > ?", ReadRowCursor(page));
     where.AddText("s.category", filter.category);
     where.AddText("s.part_label", filter.part_label);
     where.AddText("s.hand", filter.hand);

@@ -63,20 +63,34 @@ std::string FindQueued(Database& database, bool slow) {
   return row.Bind(slow).Step() ? row.Text(0) : std::string();
 }
 
+int64_t CountQueued(Database& database, bool slow) {
+  Statement row = database.Prepare(
+      "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?");
+  row.Bind(slow).Step();
+  return row.Int(0);
+}
+
 }  // namespace
 
 Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
                                    const std::string& request,
                                    const std::string& payload,
-                                   const std::string& idempotency_key) {
+                                   const std::string& idempotency_key,
+                                   int64_t max_queued) {
   return impl_->Write([&](Database& database) {
     if (auto known = FindJobByKey(database, idempotency_key)) {
       if (known->kind != kind || known->request != request) {
-        Throw(ErrorCode::kConflict,
+        Throw(ErrorCode::kKeyReused,
               "The Idempotency-Key was used for another request.",
               "use a new key for a new request", "Idempotency-Key");
       }
       return *known;
+    }
+    if (CountQueued(database, slow) >= max_queued) {
+      Throw(ErrorCode::kOverloaded,
+            std::to_string(max_queued) + " jobs are waiting already.",
+            "send the request again when some have ended; GET /v1/jobs lists "
+            "them");
     }
     const std::string id = MakeUuid();
     database
@@ -112,6 +126,20 @@ Result<Page<StoredJob>> Store::ListJobs(std::optional<JobState> state,
     while (rows.Step()) jobs.push_back(MakeJob(rows));
     return MakePage(std::move(jobs), page.limit,
                     [](const StoredJob& last) { return last.id; });
+  });
+}
+
+Result<std::map<std::pair<JobKind, JobState>, int64_t>> Store::CountJobs()
+    const {
+  return impl_->Read([&](Database& database) {
+    std::map<std::pair<JobKind, JobState>, int64_t> counts;
+    Statement rows = database.Prepare(
+        "SELECT kind, state, count(*) FROM jobs GROUP BY kind, state");
+    while (rows.Step()) {
+      counts[{Unwrap(ParseJobKind(rows.Text(0))),
+              Unwrap(ParseJobState(rows.Text(1)))}] = rows.Int(2);
+    }
+    return counts;
   });
 }
 

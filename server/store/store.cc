@@ -1,6 +1,7 @@
 #include "server/store/store.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "engine/parameters/parameters.h"
 #include "server/ids.h"
@@ -39,6 +40,18 @@ void CheckIdCursor(const PageRequest& page) {
 
 void CheckNameCursor(const PageRequest& page) {
   CheckCursorLetters(page, "0123456789abcdefghijklmnopqrstuvwxyz_-");
+}
+
+int64_t ReadRowCursor(const PageRequest& page) {
+  int64_t row = 0;
+  const char* const end = page.cursor.data() + page.cursor.size();
+  if (page.cursor.empty()) return row;
+  const auto [stop, error] = std::from_chars(page.cursor.data(), end, row);
+  if (error != std::errc() || stop != end) {
+    Throw(ErrorCode::kInvalidArgument, "The cursor is not of this list.",
+          "use next_cursor of the page before", "cursor");
+  }
+  return row;
 }
 
 void InsertParameterSet(Database& database, const std::string& hash,
@@ -457,6 +470,13 @@ StoreCounts CountRows(Database& database) {
 
 Result<StoreCounts> Store::Count() const {
   return impl_->Read([](Database& database) { return CountRows(database); });
+}
+
+Result<int64_t> Store::CalcSize() const {
+  return impl_->Read([](Database& database) {
+    return database.QueryInt("PRAGMA page_count") *
+           database.QueryInt("PRAGMA page_size");
+  });
 }
 
 Result<CheckReport> Store::Check() const {

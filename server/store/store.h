@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +41,11 @@ struct GraspQuery {
 struct ObjectFilter {
   std::string category;
   std::optional<ObjectRole> role;
+};
+
+struct TransferFilter {
+  std::string category;
+  std::string object_id;
 };
 
 struct GraspSpaceFilter {
@@ -173,22 +180,29 @@ class Store {
   Result<StoredTransfer> InsertTransfer(const StoredTransfer& transfer,
                                         const std::vector<StoredGrasp>& grasps);
   Result<StoredTransfer> FindTransfer(const std::string& id) const;
+  /** Newest first. */
+  Result<Page<StoredTransfer>> ListTransfers(const TransferFilter& filter,
+                                             const PageRequest& page) const;
 
   // ---- Jobs -----------------------------------------------------------------
   /** @param slow  It takes minutes: kept apart from what someone waits for.
    @param payload  The bytes of a mesh; kept until the job ends.
    @param idempotency_key  When not empty: a job with the same key is answered
-     instead of a new one. @retval kConflict if that asked for something else.
- */
-  Result<StoredJob> InsertJob(JobKind kind, bool slow,
-                              const std::string& request,
-                              const std::string& payload,
-                              const std::string& idempotency_key);
+     instead of a new one.
+   @param max_queued  Of the slow ones, or of the others.
+   @retval kKeyReused if the key's job asked for something else.
+   @retval kOverloaded when as many are queued. */
+  Result<StoredJob> InsertJob(
+      JobKind kind, bool slow, const std::string& request,
+      const std::string& payload, const std::string& idempotency_key,
+      int64_t max_queued = std::numeric_limits<int64_t>::max());
   Result<StoredJob> FindJob(const std::string& id) const;
   /** Newest first. */
   Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
                                    const PageRequest& page) const;
   Result<std::string> ReadJobPayload(const std::string& id) const;
+  /** How many there are of each kind and state. */
+  Result<std::map<std::pair<JobKind, JobState>, int64_t>> CountJobs() const;
   /** The oldest queued job, slow or not, becomes running; none when there is
    none. */
   Result<std::optional<StoredJob>> ClaimJob(bool slow);
@@ -209,6 +223,8 @@ class Store {
 
   // ---- Health ---------------------------------------------------------------
   Result<StoreCounts> Count() const;
+  /** The size of the database without its log, bytes. */
+  Result<int64_t> CalcSize() const;
   /** Reads every page, key and blob. */
   Result<CheckReport> Check() const;
 

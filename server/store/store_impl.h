@@ -77,6 +77,9 @@ void CheckPage(const PageRequest& page);
  @throws StorageFailure kInvalidArgument when it is not. */
 void CheckIdCursor(const PageRequest& page);
 void CheckNameCursor(const PageRequest& page);
+/** The row number that a list by rows goes on from; 0 for its first page.
+ @throws StorageFailure kInvalidArgument when the cursor is none. */
+int64_t ReadRowCursor(const PageRequest& page);
 
 /** Cuts a list that was read with one item more than asked for.
  @param cursor_of  Gives the cursor that continues after an item. */

@@ -1,13 +1,18 @@
 #include "server/ids.h"
 #include "server/store/blob_codec.h"
+#include "server/store/filter.h"
 #include "server/store/store.h"
 #include "server/store/store_impl.h"
 
 namespace graspdb {
 namespace {
 
+using store::CheckPage;
+using store::Filter;
 using store::InsertGrasp;
 using store::InsertParameterSet;
+using store::MakePage;
+using store::ReadRowCursor;
 using store::Throw;
 using store::Unwrap;
 
@@ -61,12 +66,12 @@ void InsertTransferRow(Database& database, const StoredTransfer& transfer) {
   database
       .Prepare(
           "INSERT INTO transfers VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-          " ?)")
+          " ?, ?)")
       .Bind(transfer.id, transfer.object_id, transfer.example_id,
             transfer.category, transfer.hand, ToString(transfer.stage),
             transfer.sources_per_part, transfer.parameters_hash, transfer.seed,
             transfer.engine_version, transfer.similarity, transfer.complete,
-            FormatNow())
+            FormatNow(), transfer.enough)
       .Run();
   WriteTransferNotes(database, transfer);
 }
@@ -157,7 +162,7 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
     Statement row = database.Prepare(
         "SELECT t.id, t.object_id, t.example_id, t.category, t.hand, t.stage,"
         " t.sources_per_part, p.json, t.parameters_hash, t.seed,"
-        " t.engine_version, t.similarity, t.complete, t.created_at"
+        " t.engine_version, t.similarity, t.complete, t.created_at, t.enough"
         " FROM transfers t JOIN parameter_sets p"
         " ON p.hash = t.parameters_hash WHERE t.id = ?");
     if (!row.Bind(id).Step()) return transfer;
@@ -176,6 +181,7 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
     transfer->similarity = row.Double(11);
     transfer->complete = row.Int(12) != 0;
     transfer->created_at = row.Text(13);
+    if (!row.IsNull(14)) transfer->enough = static_cast<int>(row.Int(14));
   }
   ReadTransferNotes(database, *transfer);
   ReadContactMaps(database, *transfer);
@@ -205,6 +211,37 @@ Result<StoredTransfer> Store::FindTransfer(const std::string& id) const {
             "POST /v1/grasps makes them", "id");
     }
     return *transfer;
+  });
+}
+
+Result<Page<StoredTransfer>> Store::ListTransfers(
+    const TransferFilter& filter, const PageRequest& page) const {
+  return impl_->Read([&](Database& database) {
+    CheckPage(page);
+    Filter where;
+    if (const int64_t before = ReadRowCursor(page); before > 0) {
+      where.AddValues("rowid < ?", before);
+    }
+    where.AddText("category", filter.category);
+    where.AddText("object_id", filter.object_id);
+    std::vector<std::pair<int64_t, std::string>> found;
+    {
+      Statement rows =
+          database.Prepare("SELECT rowid, id FROM transfers " + where.sql() +
+                           " ORDER BY rowid DESC LIMIT ?");
+      where.Bind(rows);
+      rows.Bind(page.limit + 1);
+      while (rows.Step()) found.emplace_back(rows.Int(0), rows.Text(1));
+    }
+    const auto ids =
+        MakePage(std::move(found), page.limit,
+                 [](const auto& last) { return std::to_string(last.first); });
+    Page<StoredTransfer> transfers;
+    transfers.next_cursor = ids.next_cursor;
+    for (const auto& [row, id] : ids.items) {
+      transfers.items.push_back(*ReadTransfer(database, id));
+    }
+    return transfers;
   });
 }
 

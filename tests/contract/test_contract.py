@@ -3,7 +3,9 @@
 import gzip
 import json
 import math
+import re
 import socket
+import sqlite3
 import subprocess
 import threading
 import time
@@ -11,6 +13,7 @@ from xml.etree import ElementTree
 
 import numpy
 import pytest
+import requests
 
 import meshes
 from contract_client import ROOT, load_spec, operations
@@ -36,17 +39,47 @@ def answer(contract, world):
 # ---- The server itself -------------------------------------------------------
 
 
-def test_landing_page_lists_the_operations_and_a_curl_line(contract):
-    page = contract.call("getLandingPage", 200).decode()
-    assert "curl --data-binary" in page and "<script" not in page
-    for _, _, path, _, _ in operations(contract.spec):
-        assert path in page
+def test_the_viewer_and_all_that_it_loads_are_served(contract):
+    page = contract.call("getViewer", 200).decode()
+    files = re.findall(r'(?:src|href)="\.?/assets/([^"]+)"', page)
+    assert len(files) >= 3
+    for file in files:
+        contract.call("getViewerFile", 200, path={"file": file})
+        assert "immutable" in contract.last.headers["Cache-Control"]
+    policy = contract.last.headers["Content-Security-Policy"]
+    assert "script-src 'self'" in policy and "unsafe" not in policy
+    contract.call("getViewerFile", 404, path={"file": "none.js"})
+    contract.call("getViewer", 200, query={"anything": "goes"})
 
 
 def test_health_and_readiness(contract):
     assert contract.call("getHealth", 200)["status"] == "ok"
     counts = contract.call("getReadiness", 200)["counts"]
     assert counts["hands"] >= 1
+
+
+def test_metrics_are_prometheus_text(contract):
+    contract.call("getJob", 404, path={"id": UNKNOWN_UUID})
+    text = contract.call("getMetrics", 200).decode()
+    samples, types = {}, {}
+    for line in text.splitlines():
+        if line.startswith("# TYPE"):
+            _, _, name, kind = line.split()
+            types[name] = kind
+        elif not line.startswith("#"):
+            match = re.fullmatch(
+                r'([a-z_]+)(?:{([a-z_]+="[^"]*"(?:,[a-z_]+="[^"]*")*)})? (\S+)',
+                line)
+            assert match, line
+            base = re.sub("_(bucket|sum|count)$", "", match[1])
+            assert match[1] in types or types[base] == "histogram", line
+            samples[match[1], match[2]] = float(match[3])
+    assert samples["graspdb_http_requests_total",
+                   'method="GET",route="/v1/jobs/{id}",status="404"'] >= 1
+    assert UNKNOWN_UUID not in text
+    assert samples["process_resident_memory_bytes", None] > 1e6
+    assert samples["graspdb_database_bytes", None] > 4096
+    assert samples["graspdb_stored", 'what="hands"'] >= 1
 
 
 def test_the_contract_served_is_the_file(contract):
@@ -77,6 +110,23 @@ def test_hands(contract):
     assert "barrett-bh8-280" in problem["hint"]
     contract.call("getUrdf", 404, path={"name": "shadow"})
     contract.call("postHand", 501)
+
+
+def test_the_meshes_of_a_hand_are_those_that_its_urdf_names(contract):
+    name = contract.call("listHands", 200)["items"][0]["name"]
+    urdf = ElementTree.fromstring(
+        contract.call("getUrdf", 200, path={"name": name}))
+    files = {mesh.attrib["filename"] for mesh in urdf.iter("mesh")}
+    assert files
+    for file in files:
+        folder, _, base = file.rpartition("/")
+        assert folder == "meshes"  # So that the relative address is right.
+        obj = contract.call("getHandMesh", 200,
+                            path={"name": name, "file": base})
+        assert obj.count(b"\nf ") >= 4
+    for unknown in ("palm.obj", "..", "palm_0", "%2e%2e%2fhand.urdf"):
+        contract.call("getHandMesh", 404,
+                      path={"name": name, "file": unknown})
 
 
 def test_categories(contract, world):
@@ -487,6 +537,21 @@ def test_a_transfer_tells_its_whole_story(contract, answer):
                              path={"id": answer["transfer_id"]})
     assert len(transfer["attempts"]) == 4
     assert transfer["summary"] == answer["summary"]
+    query = {"object": answer["object"]["id"], "category": "mug", "limit": 1}
+    listed = contract.call("listTransfers", 200, query=query)
+    ids = []
+    while True:
+        for item in listed["items"]:
+            ids.append(item["id"])
+            if item["id"] == transfer["id"]:
+                assert item == {key: transfer[key] for key in item}
+        if not listed["next_cursor"]:
+            break
+        listed = contract.call("listTransfers", 200, query={
+            **query, "cursor": listed["next_cursor"]})
+    assert len(ids) == len(set(ids)) and transfer["id"] in ids
+    contract.call("listTransfers", 404, query={"object": UNKNOWN_UUID})
+    contract.call("listTransfers", 400, query={"cursor": "1x"})
     contract.call("getTransfer", 404, path={"id": UNKNOWN_HASH})
 
 
@@ -534,6 +599,113 @@ def test_a_job_can_be_polled(contract, world):
     contract.call("listJobs", 400, query={"state": "lost"})
 
 
+def read_events(stream):
+    """The (id, event, data) of a text/event-stream, comments left out."""
+    events = []
+    for block in stream.decode().split("\n\n"):
+        fields = dict(line.split(": ", 1) for line in block.split("\n")
+                      if line and not line.startswith(":"))
+        if fields:
+            events.append((fields["id"], fields["event"],
+                           json.loads(fields["data"])))
+    return events
+
+
+def grasps_of(events):
+    return {data["id"]: data for _, event, data in events if event == "grasp"}
+
+
+def test_a_job_tells_of_itself_and_of_each_grasp(contract, world):
+    job = contract.call("postGrasps", 202, query=transfer_query(seed=14),
+                        body=world["novel_bytes"],
+                        headers={"Prefer": "respond-async"})
+    path = {"id": job["id"]}
+    events = read_events(contract.call("streamJob", 200, path=path))
+    jobs = [data for _, event, data in events if event == "job"]
+    for data in jobs:
+        contract.validate(data, {"$ref": "#/components/schemas/Job"})
+    assert jobs[-1]["state"] == "succeeded"
+    progress = [data["progress"] for data in jobs]
+    assert progress == sorted(progress)
+    # The grasps told early are those that were stored, word for word.
+    told = grasps_of(events)
+    stored = contract.call("queryGrasps", 200, query={
+        "transfer": jobs[-1]["result"]["transfer"], "stage": "assembly"})
+    assert told == {grasp["id"]: grasp for grasp in stored["items"]}
+    assert told
+
+    # Who comes late gets them all, and nobody waits for a job that has ended.
+    assert grasps_of(read_events(
+        contract.call("streamJob", 200, path=path))) == told
+    contract.call("streamJob", 200, path=path,
+                  headers={"Last-Event-ID": "nonsense"})
+    contract.call("streamJob", 404, path={"id": UNKNOWN_UUID})
+
+
+def test_who_returns_with_the_last_event_id_gets_what_is_new(contract, world):
+    job = contract.call("postGrasps", 202,
+                        query=transfer_query(seed=15, sources=12),
+                        body=world["novel_bytes"],
+                        headers={"Prefer": "respond-async"})
+    url = f"{contract.base_url}/v1/jobs/{job['id']}/events"
+    with requests.get(url, stream=True, timeout=120) as answer:
+        first = b""
+        for piece in answer.iter_content(chunk_size=None):
+            first += piece
+            if b"event: grasp" in first and first.endswith(b"\n\n"):
+                break
+    seen = read_events(first)
+    with requests.get(url, stream=True, timeout=120,
+                      headers={"Last-Event-ID": seen[-1][0]}) as answer:
+        piece = next(answer.iter_content(chunk_size=None))
+    resumed = read_events(piece)
+    if resumed[-1][2]["state"] == "running":
+        assert not set(grasps_of(resumed)) & set(grasps_of(seen))
+    wait_for(contract, job["id"], "succeeded")
+
+
+def test_event_streams_never_take_all_threads(binary, contract, world, server,
+                                              tmp_path):
+    database = tmp_path / "copy.db"
+    with sqlite3.connect(server.database) as source:
+        with sqlite3.connect(database) as target:
+            source.backup(target)
+    live = LiveServer(binary, database, tmp_path, "--http-threads", "4")
+    job = requests.post(
+        f"{live.url}/v1/objects/{world['example']['id']}/grasp-spaces",
+        json={"parts": ["handle"]}, timeout=20).json()
+    url = f"{live.url}/v1/jobs/{job['id']}/events"
+    streams = [requests.get(url, stream=True, timeout=20) for _ in range(3)]
+    assert [stream.status_code for stream in streams] == [200, 200, 503]
+    assert streams[2].json()["code"] == "overloaded"
+    assert streams[2].headers["Retry-After"]
+    assert requests.get(f"{live.url}/healthz", timeout=5).ok
+    # A place is free again once its client has gone.
+    streams[0].close()
+    deadline = time.monotonic() + 30
+    while requests.get(url, stream=True, timeout=20).status_code != 200:
+        assert time.monotonic() < deadline
+        time.sleep(0.2)
+    # SIGTERM ends streams.
+    assert live.stop() == 0, live.log()
+
+
+def test_a_full_queue_is_a_503(binary, contract, world, server, tmp_path):
+    database = tmp_path / "copy.db"
+    with sqlite3.connect(server.database) as source:
+        with sqlite3.connect(database) as target:
+            source.backup(target)
+    live = LiveServer(binary, database, tmp_path, "--max-queued-jobs", "2")
+    url = f"{live.url}/v1/objects/{world['example']['id']}/grasp-spaces"
+    answers = [requests.post(url, json={"parts": ["handle"], "seed": seed},
+                             timeout=20) for seed in range(1, 6)]
+    codes = [answer.status_code for answer in answers]
+    assert codes[:2] == [202, 202] and codes[-1] == 503, codes
+    assert answers[-1].json()["code"] == "overloaded"
+    assert answers[-1].headers["Retry-After"]
+    assert live.stop() == 0, live.log()
+
+
 def test_a_running_job_can_be_cancelled(contract, world):
     job = contract.call("postGraspSpaces", 202,
                         path={"id": world["example"]["id"]},
@@ -551,14 +723,14 @@ def test_a_retry_under_a_key_has_no_second_effect(contract, world):
     again = contract.call("postGrasps", (200, 202), query=query,
                           headers=headers, body=world["novel_bytes"])
     assert again.get("id", first["id"]) == first["id"]
-    contract.call("postGrasps", 409, query=transfer_query(seed=13),
+    contract.call("postGrasps", 422, query=transfer_query(seed=13),
                   headers=headers, body=world["novel_bytes"])
     key = {"Idempotency-Key": "key-2"}
     category = {"name": "once", "parts": [{"label": "a"}]}
     contract.call("postCategory", 201, body=category, headers=key)
     contract.call("postCategory", 201, body=category, headers=key)
     assert contract.last.headers["Idempotent-Replayed"] == "true"
-    contract.call("postCategory", 409, body={**category, "name": "twice"},
+    contract.call("postCategory", 422, body={**category, "name": "twice"},
                   headers=key)
     contract.call("postCategory", 400, body=category,
                   headers={"Idempotency-Key": "k" * 256})
@@ -718,7 +890,7 @@ def test_other_content_types_and_codings_are_a_415(contract, world):
 
 
 def test_every_operation_refuses_an_unknown_parameter(contract, world):
-    values = {"id": UNKNOWN_UUID, "name": "x"}
+    values = {"id": UNKNOWN_UUID, "name": "x", "file": "x"}
     for operation_id, method, path, operation, _ in operations(contract.spec):
         if "400" not in operation["responses"]:
             continue

@@ -1,6 +1,7 @@
 #include "engine/grasp_engine.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,38 @@ TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
     }
   }
   EXPECT_GE(assembled, static_cast<int>(result.records.size()) / 2);
+}
+
+TEST_F(GripperPipeline, ATransferEndsWithEnoughSureGraspsOnAnyThreads) {
+  const GraspSpace space = LearnBox(2);
+  std::vector<TransferResult> results;
+  for (const int threads : {1, 2}) {
+    TransferRequest request = MakeRequest(box_E_, space, threads);
+    request.parameters.transfer.sure_grip = 0.0;
+    request.enough = 2;
+    std::vector<int> told;
+    request.on_record = [&](int i, const TransferRecord&) {
+      told.push_back(i);
+    };
+    results.push_back(Run(request));
+    const auto& records = results.back().records;
+    EXPECT_LT(records.size(), static_cast<size_t>(kSources));
+    EXPECT_TRUE(records.back().assembled);
+    EXPECT_EQ(std::count_if(records.begin(), records.end(),
+                            [](const TransferRecord& record) {
+                              return record.assembled.has_value();
+                            }),
+              2);
+    std::vector<int> all(records.size());
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(told, all);
+  }
+  ASSERT_EQ(results[0].records.size(), results[1].records.size());
+  for (size_t i = 0; i < results[0].records.size(); ++i) {
+    EXPECT_EQ(results[0].records[i].source_grasp,
+              results[1].records[i].source_grasp);
+    EXPECT_EQ(results[0].records[i].assembled, results[1].records[i].assembled);
+  }
 }
 
 TEST_F(GripperPipeline, TheHandKeepsOffThePartThatIsKeptFree) {

@@ -1,4 +1,5 @@
 #include "engine/planning/grasp_evaluator.h"
+#include "engine/planning/perturbed_copies.h"
 
 #include <algorithm>
 #include <cmath>

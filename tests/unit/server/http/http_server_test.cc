@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -100,7 +101,7 @@ class HttpServerTest : public testing::Test {
     if (thread_.joinable()) thread_.join();
   }
 
-  static Router MakeRouter() {
+  Router MakeRouter() {
     Router router;
     router.Add({"GET", "/hello/{name}", BodyKind::kNone,
                 [](const HttpRequest& request) {
@@ -122,6 +123,24 @@ class HttpServerTest : public testing::Test {
     router.Add({"GET", "/throw", BodyKind::kNone,
                 [](const HttpRequest&) -> Result<HttpResponse> {
                   throw std::runtime_error("secret");
+                }});
+    router.Add({"GET", "/pieces", BodyKind::kNone, [](const HttpRequest&) {
+                  HttpResponse response = Text("");
+                  response.next_piece =
+                      [left = 3]() mutable -> std::optional<std::string> {
+                    if (left == 0) return std::nullopt;
+                    return "piece " + std::to_string(left--) + "\n";
+                  };
+                  return response;
+                }});
+    router.Add({"GET", "/endless", BodyKind::kNone,
+                [gone = &gone_](const HttpRequest&) {
+                  HttpResponse response = Text("");
+                  response.next_piece =
+                      [place = std::shared_ptr<void>(nullptr, [gone](void*) {
+                         *gone = true;
+                       })] { return std::optional(std::string(100'000, 'x')); };
+                  return response;
                 }});
     router.Add({"GET", "/fail", BodyKind::kNone,
                 [](const HttpRequest&) -> Result<HttpResponse> {
@@ -168,6 +187,7 @@ class HttpServerTest : public testing::Test {
   int port_{0};
   std::unique_ptr<HttpServer> server_;
   std::thread thread_;
+  std::atomic<bool> gone_{false};  // Whoever read /endless.
   std::mutex mutex_;
   std::string log_;
 };
@@ -191,6 +211,43 @@ TEST_F(HttpServerTest, HeadIsGetWithoutBody) {
       "HEAD /hello/x HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
   EXPECT_THAT(answer, HasSubstr("Content-Length: 7\r\n"));
   EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
+}
+
+TEST_F(HttpServerTest, ABodyInPiecesIsSentChunkByChunk) {
+  Client client(port_);
+  for (int i = 0; i < 2; ++i) {  // The connection stays.
+    client.Send("GET /pieces HTTP/1.1\r\nHost: h\r\n\r\n");
+    const std::string answer = client.ReadUntil("\r\n0\r\n\r\n");
+    EXPECT_THAT(answer, HasSubstr("Transfer-Encoding: chunked\r\n"));
+    EXPECT_THAT(answer, EndsWith("\r\n\r\n8\r\npiece 3\n\r\n8\r\npiece 2\n"
+                                 "\r\n8\r\npiece 1\n\r\n0\r\n\r\n"));
+  }
+  EXPECT_THAT(log(), HasSubstr("target=\"/pieces\" status=200 in=0 out=24"));
+}
+
+TEST_F(HttpServerTest, ABodyInPiecesEndsWithTheConnectionInHttp10) {
+  const std::string answer =
+      Exchange("GET /pieces HTTP/1.0\r\nHost: h\r\n\r\n");
+  EXPECT_THAT(answer, Not(HasSubstr("chunked")));
+  EXPECT_THAT(answer, EndsWith("\r\n\r\npiece 3\npiece 2\npiece 1\n"));
+}
+
+TEST_F(HttpServerTest, HeadOfABodyInPiecesHasNone) {
+  const std::string answer =
+      Exchange("HEAD /pieces HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
+  EXPECT_THAT(answer, Not(HasSubstr("piece")));
+}
+
+TEST_F(HttpServerTest, AnEndlessBodyEndsWhenItsReaderGoes) {
+  {
+    Client client(port_);
+    client.Send("GET /endless HTTP/1.1\r\nHost: h\r\n\r\n");
+    EXPECT_THAT(client.ReadUntil("xxx"), EndsWith("xxx"));
+    EXPECT_FALSE(gone_);
+  }
+  while (!gone_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
 TEST_F(HttpServerTest, NoContentHasNoBody) {

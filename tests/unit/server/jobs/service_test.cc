@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -447,6 +448,43 @@ TEST_F(ServiceTest, CountCutsTheAnswerAndNotTheWork) {
   if (!all.grasps.empty()) {
     EXPECT_EQ(best.grasps[0].id, all.grasps[0].id);
   }
+}
+
+TEST_F(ServiceTest, ATransferTellsEachGraspAsItWillBeStored) {
+  const auto service = MakeService(Copy("learned"));
+  std::map<std::string, std::string> told;
+  const auto hand = service->FindHandModel("barrett-bh8-280").value();
+  const auto answer = service
+                          ->TransferGrasps(MakeOrder(), context_,
+                                           [&](const StoredGrasp& grasp) {
+                                             told[grasp.id] =
+                                                 ToJson(grasp, *hand);
+                                           })
+                          .value();
+  std::map<std::string, std::string> stored;
+  for (const StoredGrasp& grasp : answer.grasps) {
+    stored[grasp.id] = ToJson(grasp, *hand);
+  }
+  EXPECT_THAT(told, Not(IsEmpty()));
+  EXPECT_EQ(told, stored);
+}
+
+// It was stored as if its deadline had cut it, and answered for ever after.
+TEST_F(ServiceTest, ACancelledTransferStoresNothing) {
+  const auto service = MakeService(Copy("learned"));
+  ExecutionContext* self = nullptr;
+  ExecutionContext context([&](const std::string& stage, double) {
+    if (stage == "transfer: transferring") self->Cancel();
+  });
+  self = &context;
+  TransferOrder order = MakeOrder();
+  order.sources = 12;
+  const auto before = service->store().Count().value();
+  EXPECT_EQ(service->TransferGrasps(order, context).error().code,
+            ErrorCode::kCancelled);
+  const auto after = service->store().Count().value();
+  EXPECT_EQ(after.transfers, before.transfers);
+  EXPECT_EQ(after.grasps, before.grasps);
 }
 
 TEST_F(ServiceTest, PartsThatNothingIsLearnedForAreWarnedOf) {

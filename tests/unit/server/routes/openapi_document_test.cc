@@ -24,6 +24,7 @@ TEST(Problem, KindsHaveTheNamesThatTheDatabaseKeeps) {
         ErrorCode::kTooLarge, ErrorCode::kNotFound, ErrorCode::kConflict,
         ErrorCode::kNotInCategory, ErrorCode::kCancelled,
         ErrorCode::kDeadlineExceeded, ErrorCode::kStorage,
+        ErrorCode::kOverloaded, ErrorCode::kKeyReused,
         ErrorCode::kNotImplemented, ErrorCode::kInternal}) {
     EXPECT_STREQ(KindOf(code).code, ToString(code));
   }

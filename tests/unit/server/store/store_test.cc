@@ -512,7 +512,20 @@ TEST_F(StoreTest, JobsWithTheSameIdempotencyKeyAreOne) {
             first.id);
   EXPECT_EQ(
       store_->InsertJob(JobKind::kLearn, true, "[]", "", "k").error().code,
-      ErrorCode::kConflict);
+      ErrorCode::kKeyReused);
+}
+
+TEST_F(StoreTest, NoMoreJobsAreQueuedThanAllowed) {
+  const auto insert = [&](bool slow, const std::string& key) {
+    return store_->InsertJob(JobKind::kLearn, slow, "{}", "", key, 2);
+  };
+  EXPECT_TRUE(insert(true, "first"));
+  EXPECT_TRUE(insert(true, ""));
+  EXPECT_EQ(insert(true, "").error().code, ErrorCode::kOverloaded);
+  EXPECT_TRUE(insert(true, "first"));  // Is queued already …
+  EXPECT_TRUE(insert(false, ""));      // … and this waits in another queue.
+  store_->ClaimJob(true).value();
+  EXPECT_TRUE(insert(true, ""));
 }
 
 TEST_F(StoreTest, JobsAreListedNewestFirst) {
