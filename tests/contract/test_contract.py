@@ -932,6 +932,8 @@ def test_a_strange_name_in_the_path_is_a_404(contract, name):
             contract.spec):
         if "{" not in path or method != "get":
             continue
+        if operation_id == "getViewerFile" and name == "..":
+            continue  # A client makes / of it, which is a page.
         parameter = path[path.index("{") + 1:path.index("}")]
         contract.call(operation_id, 404, path={parameter: name})
 
