@@ -1,0 +1,62 @@
+import { ChartFrame } from './chart_frame';
+import { makeDomainFromZero } from './scale';
+import { type SeriesKey, SeriesLegend } from './series_legend';
+
+interface BarsProps {
+  readonly title: string;
+  readonly xLabel: string;
+  readonly rows: readonly string[];
+  /** One count per row. */
+  readonly series: readonly (SeriesKey & { readonly counts: readonly number[] })[];
+}
+
+const NAME_ROOM = 150; // px
+const BAR_SHARE = 0.62;
+
+/** Counts by name, lying bars, the series after each other. */
+export function Bars({ title, xLabel, rows, series }: BarsProps) {
+  const totals = rows.map((_, row) => series.reduce((sum, { counts }) => sum + (counts[row] ?? 0), 0));
+  const place = (row: number): number => rows.length - row - 0.5;
+  return (
+    <ChartFrame
+      title={title}
+      summary={rows.map((name, row) => `${name}: ${totals[row] ?? 0}`).join(', ')}
+      x={{ label: xLabel, domain: makeDomainFromZero(totals) }}
+      y={{
+        label: '',
+        domain: [0, Math.max(rows.length, 1)],
+        ticks: rows.map((name, row) => [place(row), name] as const),
+      }}
+      left={NAME_ROOM}
+      legend={<SeriesLegend series={series} />}
+    >
+      {(x, y) =>
+        rows.map((name, row) => {
+          const top = y.toPixel(place(row) + BAR_SHARE / 2);
+          const height = y.toPixel(place(row) - BAR_SHARE / 2) - top;
+          return (
+            <g key={name}>
+              {series.map(({ name: of, colour, counts }, s) => {
+                const before = series.slice(0, s).reduce((sum, other) => sum + (other.counts[row] ?? 0), 0);
+                const start = x.toPixel(before);
+                return (
+                  <rect
+                    key={of}
+                    x={start}
+                    width={x.toPixel(before + (counts[row] ?? 0)) - start}
+                    y={top}
+                    height={height}
+                    fill={colour}
+                  />
+                );
+              })}
+              <text class="bar-count" x={x.toPixel(totals[row] ?? 0) + 5} y={top + height / 2} dy="0.32em">
+                {totals[row]}
+              </text>
+            </g>
+          );
+        })
+      }
+    </ChartFrame>
+  );
+}

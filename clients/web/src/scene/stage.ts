@@ -1,0 +1,176 @@
+import {
+  Box3, DirectionalLight, HemisphereLight, type Object3D, PerspectiveCamera, Scene, Sphere, Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+
+/** What one frame took. */
+export interface FrameStatistics {
+  readonly drawCalls: number;
+  readonly triangles: number;
+  readonly milliseconds: number;
+}
+
+/** From where a stage is seen at first: from the front, right and above. */
+const FIRST_VIEW = new Vector3(0.55, -1, 0.6).normalize();
+const FIELD_OF_VIEW = 32; // Degrees, as three takes it: long enough a lens to compare lengths.
+/** Pixels beyond this per CSS pixel cost much and show little. */
+const MOST_PIXELS_RATIO = 2;
+
+/** Lights that look the same from every side: they go with the camera. */
+export function addLights(scene: Scene, camera: PerspectiveCamera): void {
+  const sky = new HemisphereLight('#ffffff', '#8d99a8', 1.5);
+  sky.position.set(0, 0, 1);
+  const key = new DirectionalLight('#ffffff', 1.7);
+  key.position.set(-0.5, 0.9, 0.8);
+  camera.add(key, key.target);
+  scene.add(sky, camera);
+}
+
+/** Puts the camera so that the sphere fills its view, seen along `direction`. */
+export function frameSphere(
+  camera: PerspectiveCamera,
+  { center, radius }: Sphere,
+  direction: Vector3 = FIRST_VIEW,
+): void {
+  const vertical = (camera.fov * Math.PI) / 360;
+  const horizontal = Math.atan(Math.tan(vertical) * camera.aspect);
+  const distance = radius / Math.sin(Math.min(vertical, horizontal));
+  camera.position.copy(center).addScaledVector(direction, distance);
+  camera.up.set(0, 0, 1);
+  camera.lookAt(center);
+  camera.near = distance / 100;
+  camera.far = distance * 100;
+  camera.updateProjectionMatrix();
+}
+
+/** A canvas in a container, which it fills, showing a scene from a camera that
+ * the user turns about z. Draws only when something changed. */
+export class Stage {
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1);
+  private readonly controls: OrbitControls;
+  private readonly observer: ResizeObserver;
+  private readonly listeners = new Set<(statistics: FrameStatistics) => void>();
+  private framed: { readonly sphere: Sphere; readonly from: Vector3 } | null = null;
+  private request = 0;
+
+  constructor(private readonly container: HTMLElement, label: string) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, MOST_PIXELS_RATIO));
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', label);
+    container.append(canvas);
+    addLights(this.scene, this.camera);
+
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.zoomToCursor = true;
+    // Shift and the arrows turn the view; the arrows alone step through grasps.
+    this.controls.listenToKeyEvents(canvas);
+    this.controls.keyPanSpeed = 0;
+    this.controls.addEventListener('change', () => {
+      this.invalidate();
+    });
+
+    this.observer = new ResizeObserver(() => {
+      this.resize();
+    });
+    this.observer.observe(container);
+    this.resize();
+  }
+
+  describe(label: string): void {
+    this.renderer.domElement.setAttribute('aria-label', label);
+  }
+
+  add(content: Object3D): void {
+    this.scene.add(content);
+    this.invalidate();
+  }
+
+  remove(content: Object3D): void {
+    this.scene.remove(content);
+    this.invalidate();
+  }
+
+  /** Shows all of the box, seen from that direction. */
+  frame(box: Box3, from: Vector3 = FIRST_VIEW): void {
+    this.framed = { sphere: box.getBoundingSphere(new Sphere()), from };
+    this.reset();
+  }
+
+  /** Back to the first view of what was framed last. */
+  reset(): void {
+    if (!this.framed) return;
+    frameSphere(this.camera, this.framed.sphere, this.framed.from);
+    this.controls.target.copy(this.framed.sphere.center);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /** Where a point of the scene lies, in CSS pixels from the upper left corner. */
+  project(point: Vector3): { readonly x: number; readonly y: number } {
+    const { x, y } = point.clone().project(this.camera);
+    const { clientWidth, clientHeight } = this.container;
+    return { x: ((1 + x) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+  }
+
+  /** Calls the listener after each frame; gives back how to end that. */
+  onFrame(listener: (statistics: FrameStatistics) => void): () => void {
+    this.listeners.add(listener);
+    this.invalidate();
+    return () => this.listeners.delete(listener);
+  }
+
+  /** Draws soon. */
+  invalidate(): void {
+    if (this.request !== 0) return;
+    this.request = requestAnimationFrame(() => {
+      this.request = 0;
+      this.draw();
+    });
+  }
+
+  /** Draws now and waits until the picture is there, not only ordered. */
+  drawAndFinish(): FrameStatistics {
+    const start = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    const context = this.renderer.getContext();
+    // Reading a pixel is the one way to wait that every implementation honours.
+    context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+    return this.describeFrame(performance.now() - start);
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.request);
+    this.observer.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.renderer.domElement.remove();
+  }
+
+  private draw(): void {
+    const start = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    const statistics = this.describeFrame(performance.now() - start);
+    for (const listener of this.listeners) listener(statistics);
+  }
+
+  private describeFrame(milliseconds: number): FrameStatistics {
+    const { calls, triangles } = this.renderer.info.render;
+    return { drawCalls: calls, triangles, milliseconds };
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.container;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+}

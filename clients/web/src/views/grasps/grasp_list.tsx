@@ -1,0 +1,80 @@
+import { useEffect, useRef } from 'preact/hooks';
+
+import type { Grasp } from '../../api/types';
+import { formatNumber, formatShare } from '../../ui/format';
+
+interface GraspListProps {
+  readonly grasps: readonly Grasp[];
+  readonly loading: boolean;
+  /** Whether the server has more than these. */
+  readonly more: boolean;
+  readonly chosen: string | null;
+  readonly onChoose: (id: string) => void;
+}
+
+const idOf = (grasp: string): string => `grasp-${grasp}`;
+
+/** A bar as long as ε, out of the best that is listed. */
+function QualityBar({ share }: { readonly share: number }) {
+  return (
+    <svg class="quality-bar" viewBox="0 0 100 6" preserveAspectRatio="none" aria-hidden="true">
+      <rect class="quality-bar-track" width="100" height="6" />
+      <rect class="quality-bar-fill" width={100 * share} height="6" />
+    </svg>
+  );
+}
+
+/** The grasps in the order of the server. The arrows move the choice. */
+export function GraspList({ grasps, loading, more, chosen, onChoose }: GraspListProps) {
+  const list = useRef<HTMLUListElement>(null);
+  useEffect(() => {
+    const item = chosen === null ? null : document.getElementById(idOf(chosen));
+    // Only the list may scroll, never the page.
+    if (item && list.current) {
+      const { offsetTop, offsetHeight } = item;
+      const { scrollTop, clientHeight } = list.current;
+      if (offsetTop < scrollTop) list.current.scrollTop = offsetTop;
+      const end = offsetTop + offsetHeight;
+      if (end > scrollTop + clientHeight) list.current.scrollTop = end - clientHeight;
+    }
+  }, [chosen, grasps]);
+  if (loading) return <div class="skeleton list-skeleton" aria-hidden="true" />;
+  if (grasps.length === 0) return <p class="empty list-skeleton">No grasp meets these filters.</p>;
+  const best = Math.max(...grasps.map(({ quality }) => quality.epsilon), Number.EPSILON);
+  const chosenInList = grasps.some(({ id }) => id === chosen);
+  return (
+    <>
+      <ul
+        class="grasp-list"
+        role="listbox"
+        aria-label="Grasps"
+        tabIndex={0}
+        ref={list}
+        aria-activedescendant={chosen !== null && chosenInList ? idOf(chosen) : undefined}
+      >
+        {grasps.map(({ id, part, stage, quality }, index) => (
+          <li
+            key={id}
+            id={idOf(id)}
+            role="option"
+            aria-selected={id === chosen}
+            onClick={() => { onChoose(id); }}
+          >
+            <span class="grasp-rank">{index + 1}</span>
+            <span class="grasp-part">{part}</span>
+            <span class="grasp-stage">{stage}</span>
+            <span class="grasp-epsilon">{formatNumber(quality.epsilon)}</span>
+            <QualityBar share={quality.epsilon / best} />
+            <span class="grasp-robust">
+              robust {formatShare(quality.robust)} · grip {formatShare(quality.grip)}
+            </span>
+          </li>
+        ))}
+      </ul>
+      <p class="list-note">
+        {more ? `The first ${grasps.length}` : `${grasps.length} ${grasps.length === 1 ? 'grasp' : 'grasps'}`}
+        {' '}· arrow keys step through
+      </p>
+    </>
+  );
+}

@@ -1,0 +1,201 @@
+import { useEffect, useMemo, useState } from 'preact/hooks';
+import { Box3, Group, Matrix4, Vector3 } from 'three';
+
+import type { ContactMap, Grasp } from '../../api/types';
+import { useDark } from '../../app/media';
+import { useResource } from '../../app/resource';
+import { pairContacts } from '../../robot/contact_pairs';
+import { calcHandState } from '../../robot/grasp_motion';
+import { loadHandModel } from '../../robot/hand_model';
+import { toSimilarity, toVector } from '../../robot/pose';
+import { ContactMarks } from '../../scene/contact_marks';
+import { FloorGrid, GRID_CELL } from '../../scene/floor_grid';
+import { HandMesh, HandSwarm } from '../../scene/hand_mesh';
+import { MappingLines } from '../../scene/mapping_lines';
+import type { ObjectModel } from '../../scene/object_model';
+import { ObjectMesh } from '../../scene/object_mesh';
+import { placeBeside } from '../../scene/place_beside';
+import type { Stage } from '../../scene/stage';
+import { SceneLabel } from '../../scene/scene_label';
+import { useOnStage, Viewport } from '../../scene/viewport';
+import { describeObject } from '../../ui/object_name';
+import { CONTACT_COLOUR, gridColour, handColour, lineColour, rampColour } from '../../ui/palette';
+import { PartLegend } from '../../ui/part_legend';
+import { Swatch } from '../../ui/swatch';
+import { formatNumber } from '../../ui/format';
+
+/** Where a transferred grasp comes from, to be shown beside it. */
+export interface SourceOfGrasp {
+  readonly grasp: Grasp;
+  readonly model: ObjectModel;
+  readonly contactMap: ContactMap;
+}
+
+interface GraspPictureProps {
+  readonly grasp: Grasp | null;
+  readonly model: ObjectModel | null;
+  /** Null: not known yet, no cones are drawn. */
+  readonly friction: number | null;
+  /** 0 at the pre-grasp, 1 at the grasp. */
+  readonly progress: number;
+  /** All to be shown at once, as ghosts; null: only the one. */
+  readonly ghosts: readonly Grasp[] | null;
+  readonly source: SourceOfGrasp | null;
+}
+
+/** Room for the hand around an object, m. */
+const HAND_ROOM = 0.12;
+
+const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
+
+/** From the side, so that hand and object stand beside each other. */
+function chooseDirection(grasp: Grasp): Vector3 {
+  const [x, y] = grasp.pregrasp.approach;
+  const side = Math.hypot(x, y) > 0.2 ? new Vector3(y, -x, 0).normalize() : new Vector3(0.4, -1, 0).normalize();
+  return side.setZ(0.45).normalize();
+}
+
+/** A grasp on its object. */
+export function GraspPicture({ grasp, model, friction, progress, ghosts, source }: GraspPictureProps) {
+  const dark = useDark();
+  const [stage, setStage] = useState<Stage | null>(null);
+  const hand = useResource(grasp?.hand ?? null, () => loadHandModel(grasp?.hand ?? ''));
+  const ready = model !== null && grasp !== null && model.object.id === grasp.object;
+
+  // Where the example stands: left of the object, turned as the object is.
+  const X_OE = useMemo(
+    () => (ready && source ? placeBeside(boxOf(model), boxOf(source.model), source.contactMap.X_NE) : null),
+    [ready, source?.model, source?.contactMap, model],
+  );
+
+  useEffect(() => {
+    if (!stage || !ready) return;
+    const box = boxOf(model).clone().expandByScalar(HAND_ROOM);
+    if (X_OE && source) {
+      box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(HAND_ROOM));
+      stage.frame(box);
+    } else {
+      stage.frame(box, chooseDirection(grasp));
+    }
+  }, [stage, ready, model?.object.id, X_OE]);
+
+  useOnStage(
+    stage,
+    () => (model ? new ObjectMesh(model, { opacity: 1, highlighted: null }) : null),
+    [model],
+  );
+  useOnStage(stage, () => (model ? new FloorGrid(boxOf(model), gridColour(dark)) : null), [model, dark]);
+
+  const handMesh = useOnStage(
+    stage,
+    () => (hand.value && ready ? new HandMesh(hand.value, handColour(dark)) : null),
+    [hand.value, ready, dark],
+  );
+  useEffect(() => {
+    if (!handMesh || !grasp) return;
+    handMesh.setState(calcHandState(grasp, progress));
+    stage?.invalidate();
+  }, [handMesh, grasp, progress]);
+
+  useOnStage(
+    stage,
+    () => (ready && friction !== null ? new ContactMarks(grasp.contacts, friction) : null),
+    [ready, grasp, friction],
+  );
+
+  const best = Math.max(...(ghosts ?? []).map(({ quality }) => quality.epsilon), Number.EPSILON);
+  useOnStage(
+    stage,
+    () =>
+      hand.value && ready && ghosts
+        ? new HandSwarm(
+            hand.value,
+            ghosts.map((ghost) => ({
+              state: calcHandState(ghost, 1),
+              colour: rampColour(ghost.quality.epsilon / best),
+            })),
+          )
+        : null,
+    [hand.value, ready, ghosts],
+  );
+
+  useOnStage(
+    stage,
+    () =>
+      hand.value && X_OE && source && friction !== null
+        ? new SourceGroup(source, X_OE, new HandMesh(hand.value, handColour(dark)), friction)
+        : null,
+    [hand.value, X_OE, source?.grasp, friction, dark],
+  );
+  useOnStage(
+    stage,
+    () => (X_OE && source && ready ? makeMappingLines(source, grasp, X_OE, lineColour(dark)) : null),
+    [X_OE, source?.grasp, grasp, ready, dark],
+  );
+
+  const name = model ? describeObject(model.object) : '…';
+  return (
+    <Viewport
+      label={grasp ? `A hand grasping ${name} by its ${grasp.part}` : 'No grasp'}
+      onStage={setStage}
+    >
+      {stage && X_OE && source && model && (
+        <>
+          <SceneLabel stage={stage} point={topOf(boxOf(model))}>{name}</SceneLabel>
+          <SceneLabel stage={stage} point={topOf(boxOf(source.model)).applyMatrix4(X_OE)}>
+            example {describeObject(source.model.object)}
+          </SceneLabel>
+        </>
+      )}
+      <div class="viewport-legend">
+        <PartLegend parts={model?.parts ?? []} />
+        <ul class="legend">
+          <li><Swatch colour={CONTACT_COLOUR} /> contact, friction cone{friction !== null && ` μ = ${friction}`}</li>
+          {source && <li><Swatch colour={lineColour(dark)} /> contact → mapped contact</li>}
+          {ghosts && (
+            <li>
+              <Swatch colour={rampColour(0)} /> ε 0 … <Swatch colour={rampColour(1)} /> {formatNumber(best, 2)},{' '}
+              {ghosts.length} grasps
+            </li>
+          )}
+        </ul>
+        <p>Grid {GRID_CELL} m</p>
+      </div>
+    </Viewport>
+  );
+}
+
+const topOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.max.z);
+
+/** The example with the source grasp, at X_OE. */
+class SourceGroup extends Group {
+  private readonly pieces: readonly { dispose(): void }[];
+
+  constructor({ grasp, model }: SourceOfGrasp, X_OE: Matrix4, hand: HandMesh, friction: number) {
+    super();
+    const object = new ObjectMesh(model, { opacity: 1, highlighted: null });
+    const contacts = new ContactMarks(grasp.contacts, friction);
+    this.add(object, hand.setState(calcHandState(grasp, 1)), contacts);
+    this.pieces = [object, hand, contacts];
+    this.applyMatrix4(X_OE);
+  }
+
+  override dispose(): void {
+    super.dispose();
+    for (const piece of this.pieces) piece.dispose();
+  }
+}
+
+function makeMappingLines(
+  { grasp: source, contactMap: { X_NE, scale } }: SourceOfGrasp,
+  grasp: Grasp,
+  X_OE: Matrix4,
+  colour: string,
+): MappingLines {
+  const pairs = pairContacts(source.contacts, grasp.contacts, toSimilarity(X_NE, scale));
+  const mapped = pairs.map(({ p_E, p_N }) => ({ from: p_E.clone().applyMatrix4(X_OE), to: p_N }));
+  const reached = grasp.contacts.flatMap(({ p_O, mapped_p_O }) =>
+    mapped_p_O === null ? [] : [{ from: toVector(mapped_p_O), to: toVector(p_O) }],
+  );
+  return new MappingLines([...mapped, ...reached], colour);
+}
