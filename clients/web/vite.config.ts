@@ -15,6 +15,9 @@ export default defineConfig({
       output: { manualChunks: { three: ['three'] } },
     },
   },
-  server: { proxy: { '/v1': server, '/readyz': server, '/healthz': server } },
+  server: {
+    proxy: { '/v1': server },
+    fs: { allow: ['../..'] }, // Tests read the hand below data/.
+  },
   test: { include: ['tests/**/*.test.ts'] },
 });

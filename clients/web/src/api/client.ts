@@ -59,8 +59,9 @@ export const getObject = (id: string): Promise<StoredObject> => getJson(`/v1/obj
 export const getMesh = (id: string): Promise<string> =>
   getText(withQuery(`/v1/objects/${id}/mesh`, { format: 'obj' }));
 
-/** One part, with the faces of the object's mesh that are its own. */
-export const getPart = (id: string): Promise<Part> => getJson(`/v1/parts/${id}`);
+/** The parts, each with the faces of the object's mesh that are its own. */
+export const listParts = (object: string): Promise<Page<Part>> =>
+  getJson(`/v1/objects/${object}/parts`);
 
 export const renamePart = (id: string, label: string, cascade: boolean): Promise<StoredObject> =>
   sendJson('PATCH', withQuery(`/v1/parts/${id}`, { cascade }), { label });

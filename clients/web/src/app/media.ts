@@ -16,4 +16,6 @@ function useMedia(query: string): boolean {
 }
 
 export const useDark = (): boolean => useMedia('(prefers-color-scheme: dark)');
+/** As the style sheets' narrowest layout. */
+export const useNarrow = (): boolean => useMedia('(max-width: 760px)');
 export const useReducedMotion = (): boolean => useMedia('(prefers-reduced-motion: reduce)');

@@ -41,17 +41,19 @@ function choose<Word extends string>(words: readonly Word[], text: string | null
   return words.find((word) => word === text);
 }
 
+type Compact<T> = { readonly [K in keyof T]?: Exclude<T[K], undefined> };
+
 /** Leaves out what is undefined, so that optional means absent. */
-function compact<T extends object>(value: T): { [K in keyof T]: Exclude<T[K], undefined> } {
+function compact<T extends object>(value: T): Compact<T> {
   return Object.fromEntries(
     Object.entries(value).filter(([, field]) => field !== undefined),
-  ) as { [K in keyof T]: Exclude<T[K], undefined> };
+  ) as Compact<T>;
 }
 
 function readFilters(query: URLSearchParams): GraspFilters {
   const text = (name: string): string | undefined => query.get(name) ?? undefined;
   const epsilon = Number(query.get('min_epsilon') ?? '');
-  const filters: Partial<Record<keyof GraspFilters, string | number | undefined>> = {
+  return compact({
     category: text('category'),
     object: text('object'),
     grasp_space: text('grasp_space'),
@@ -63,8 +65,7 @@ function readFilters(query: URLSearchParams): GraspFilters {
     verified: choose(['physical'], query.get('verified')),
     stage: choose(STAGES, query.get('stage')),
     sort: choose(SORTS, query.get('sort')),
-  };
-  return compact(filters) as GraspFilters;
+  });
 }
 
 /** Reads `?…`; whatever is not understood is the start page. */
@@ -81,23 +82,25 @@ export function parseRoute(search: string): Route {
         view: 'grasps',
         filters: readFilters(query),
         ...compact({ grasp: text('grasp'), show: choose(EXTRAS, query.get('show')) }),
-      } as Route;
+      };
     case 'upload':
-      return { view: 'upload', ...compact({ object, job: text('job') }) } as Route;
+      return { view: 'upload', ...compact({ object, job: text('job') }) };
     case 'insight':
       return {
         view: 'insight',
         ...compact({ category: text('category'), transfer: text('transfer') }),
-      } as Route;
+      };
+    default:
+      break;
   }
-  return { view: 'browse', ...compact({ category: text('category') }) } as Route;
+  return { view: 'browse', ...compact({ category: text('category') }) };
 }
 
 /** The link to a route; `/` for the start page. */
 export function formatRoute(route: Route): string {
   const query = new URLSearchParams();
-  if (route.view !== 'browse') query.set('view', route.view);
-  const { view: _, ...rest } = route;
+  const { view, ...rest } = route;
+  if (view !== 'browse') query.set('view', view);
   const { filters, ...others } = 'filters' in rest ? rest : { filters: {}, ...rest };
   for (const [name, value] of Object.entries({ ...filters, ...others })) {
     query.set(name, String(value));

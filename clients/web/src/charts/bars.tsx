@@ -12,6 +12,8 @@ interface BarsProps {
 
 const NAME_ROOM = 150; // px
 const BAR_SHARE = 0.62;
+/** Beyond the longest bar stands its count. */
+const COUNT_ROOM = 1.08;
 
 /** Counts by name, lying bars, the series after each other. */
 export function Bars({ title, xLabel, rows, series }: BarsProps) {
@@ -21,7 +23,7 @@ export function Bars({ title, xLabel, rows, series }: BarsProps) {
     <ChartFrame
       title={title}
       summary={rows.map((name, row) => `${name}: ${totals[row] ?? 0}`).join(', ')}
-      x={{ label: xLabel, domain: makeDomainFromZero(totals) }}
+      x={{ label: xLabel, domain: makeDomainFromZero(totals.map((total) => COUNT_ROOM * total)) }}
       y={{
         label: '',
         domain: [0, Math.max(rows.length, 1)],

@@ -16,7 +16,7 @@ interface LineChartProps {
 }
 
 export function LineChart({ title, summary, x: xAxis, y: yAxis, lines, note }: LineChartProps) {
-  const keys = lines.filter(({ dashed = false }) => !dashed);
+  const keys = [...new Map(lines.map(({ name, colour }) => [name, { name, colour }])).values()];
   return (
     <ChartFrame
       title={title}
@@ -31,8 +31,8 @@ export function LineChart({ title, summary, x: xAxis, y: yAxis, lines, note }: L
       }
     >
       {(x, y) =>
-        lines.map(({ name, colour, points, dashed = false }) => (
-          <g key={`${name} ${String(dashed)}`} stroke={colour} fill={colour}>
+        lines.map(({ colour, points, dashed = false }, index) => (
+          <g key={index} stroke={colour} fill={colour}>
             <polyline
               class={dashed ? 'line dashed' : 'line'}
               points={points.map(([a, b]) => `${x.toPixel(a)},${y.toPixel(b)}`).join(' ')}

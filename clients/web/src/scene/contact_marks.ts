@@ -1,5 +1,5 @@
 import {
-  ConeGeometry, DoubleSide, Group, InstancedMesh, type Material, Matrix4, MeshBasicMaterial, Quaternion,
+  type BufferGeometry, ConeGeometry, DoubleSide, Group, InstancedMesh, type Material, Matrix4, MeshBasicMaterial, Quaternion,
   SphereGeometry, Vector3,
 } from 'three';
 
@@ -7,7 +7,7 @@ import type { Contact } from '../api/types';
 import { toVector } from '../robot/pose';
 import { CONTACT_COLOUR } from '../ui/palette';
 
-const CONE_LENGTH = 0.018; // m
+const CONE_LENGTH = 0.025; // m
 const DOT_RADIUS = 0.0016; // m
 const UP = new Vector3(0, 1, 0);
 
@@ -21,7 +21,7 @@ function makeContactPose({ p_O, n_O }: Contact): Matrix4 {
  * finger can push the object there, into it, as long as the cone is wide. They
  * show through object and hand, which hide most of them otherwise. */
 export class ContactMarks extends Group {
-  private readonly materials: Material[];
+  private readonly meshes: readonly InstancedMesh<BufferGeometry, Material>[];
 
   constructor(contacts: readonly Contact[], friction: number) {
     super();
@@ -43,18 +43,16 @@ export class ContactMarks extends Group {
     });
     cones.renderOrder = 2;
     dots.renderOrder = 3;
-    this.materials = [cones.material, dots.material].flat();
+    this.meshes = [cones, dots];
     this.add(cones, dots);
   }
 
   override dispose(): void {
     super.dispose();
-    for (const mesh of this.children) {
-      if (mesh instanceof InstancedMesh) {
-        mesh.geometry.dispose();
-        mesh.dispose();
-      }
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+      mesh.dispose();
     }
-    for (const material of this.materials) material.dispose();
   }
 }

@@ -12,11 +12,11 @@ export class FloorGrid extends GridHelper {
     super(cells * GRID_CELL, cells, colour, colour);
     const centre = box.getCenter(new Vector3());
     const snap = (x: number): number => Math.round(x / GRID_CELL) * GRID_CELL;
+    this.renderOrder = -1;
     this.rotation.x = Math.PI / 2;
     this.position.set(snap(centre.x), snap(centre.y), box.min.z);
     for (const material of [this.material].flat()) {
-      material.transparent = true;
-      material.opacity = 0.55;
+      material.depthTest = false; // A hand may be below it; the grid stays behind all.
       material.depthWrite = false;
     }
   }

@@ -10,11 +10,17 @@ export class HandMesh extends Group {
 
   constructor(private readonly hand: HandModel, colour: string) {
     super();
-    this.material = new MeshStandardMaterial({ color: colour, roughness: 0.5, metalness: 0.15 });
+    this.material = new MeshStandardMaterial({
+      color: colour,
+      roughness: 0.5,
+      metalness: 0.15,
+      transparent: true, // Opaque, but drawn after ghosts, so that these do not veil it.
+    });
     for (const { geometry, links } of hand.shapes) {
       for (const link of links) {
         const mesh = new Mesh(geometry, this.material);
         mesh.matrixAutoUpdate = false;
+        mesh.renderOrder = 1;
         this.meshes.set(link, mesh);
         this.add(mesh);
       }
@@ -42,18 +48,20 @@ export interface Ghost {
   readonly colour: string;
 }
 
-const GHOST_OPACITY = 0.16;
+/** So that few hands are clear and many a cloud, densest where most are. */
+const calcGhostOpacity = (numGhosts: number): number => 0.45 / Math.sqrt(Math.max(numGhosts, 4));
 
 /** Many hands at once: as many draw calls as the hand has different links. */
 export class HandSwarm extends Group {
-  private readonly material = new MeshLambertMaterial({
-    transparent: true,
-    opacity: GHOST_OPACITY,
-    depthWrite: false,
-  });
+  private readonly material: MeshLambertMaterial;
 
   constructor(hand: HandModel, ghosts: readonly Ghost[]) {
     super();
+    this.material = new MeshLambertMaterial({
+      transparent: true,
+      opacity: calcGhostOpacity(ghosts.length),
+      depthWrite: false,
+    });
     const poses = ghosts.map(({ state }) => hand.calcLinkPoses(state));
     for (const { geometry, links } of hand.shapes) {
       const mesh = new InstancedMesh(geometry, this.material, ghosts.length * links.length);

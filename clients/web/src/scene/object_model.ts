@@ -1,6 +1,6 @@
 import type { BufferGeometry } from 'three';
 
-import { getCategory, getMesh, getObject, getPart } from '../api/client';
+import { getCategory, getMesh, getObject, listParts } from '../api/client';
 import { remember } from '../api/remember';
 import type { Part, StoredObject } from '../api/types';
 import { makeMeshGeometry } from '../geometry/mesh_geometry';
@@ -22,17 +22,15 @@ export interface ObjectModel {
 }
 
 const loadMesh = remember(async (id: string) => readObj(await getMesh(id)));
-// A part's id is a hash of its content: a part never changes under its id.
-const loadPart = remember(getPart);
 const loadPartLabels = remember(async (category: string) =>
   (await getCategory(category)).parts.map(({ label }) => label),
 );
 
 export async function loadObjectModel(object: StoredObject): Promise<ObjectModel> {
-  const [mesh, labels, parts] = await Promise.all([
+  const [mesh, labels, { items: parts }] = await Promise.all([
     loadMesh(object.id),
     object.category === null ? Promise.resolve<string[]>([]) : loadPartLabels(object.category),
-    Promise.all((object.parts ?? []).map(({ id }) => loadPart(id))),
+    listParts(object.id),
   ]);
   const groups = parts.length > 0 ? parts.map(({ faces = [] }) => faces) : undefined;
   return {

@@ -4,7 +4,7 @@ import type { Pose } from '../api/types';
 import { toMatrix } from '../robot/pose';
 
 /** Free room between both, m: a hand on each must fit in. */
-const GAP = 0.26;
+const GAP = 0.2;
 
 /** X_OE for showing the example E left of the object O (towards -x) on the same
  * floor: turned as X_NE turns it, so that what is mapped to each other looks

@@ -1,5 +1,5 @@
 import {
-  Box3, DirectionalLight, HemisphereLight, type Object3D, PerspectiveCamera, Scene, Sphere, Vector3,
+  type Box3, DirectionalLight, HemisphereLight, type Object3D, PerspectiveCamera, Scene, Vector3,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -13,35 +13,46 @@ export interface FrameStatistics {
 
 /** From where a stage is seen at first: from the front, right and above. */
 const FIRST_VIEW = new Vector3(0.55, -1, 0.6).normalize();
+/** Of what is framed, around it. */
+const FRAME_MARGIN = 1.08;
 const FIELD_OF_VIEW = 32; // Degrees, as three takes it: long enough a lens to compare lengths.
 /** Pixels beyond this per CSS pixel cost much and show little. */
 const MOST_PIXELS_RATIO = 2;
 
 /** Lights that look the same from every side: they go with the camera. */
 export function addLights(scene: Scene, camera: PerspectiveCamera): void {
-  const sky = new HemisphereLight('#ffffff', '#8d99a8', 1.5);
+  const sky = new HemisphereLight('#ffffff', '#aab3bf', 2.1);
   sky.position.set(0, 0, 1);
-  const key = new DirectionalLight('#ffffff', 1.7);
-  key.position.set(-0.5, 0.9, 0.8);
+  const key = new DirectionalLight('#ffffff', 2.3);
+  key.position.set(-0.4, 0.6, 1);
   camera.add(key, key.target);
   scene.add(sky, camera);
 }
 
-/** Puts the camera so that the sphere fills its view, seen along `direction`. */
-export function frameSphere(
-  camera: PerspectiveCamera,
-  { center, radius }: Sphere,
-  direction: Vector3 = FIRST_VIEW,
-): void {
-  const vertical = (camera.fov * Math.PI) / 360;
-  const horizontal = Math.atan(Math.tan(vertical) * camera.aspect);
-  const distance = radius / Math.sin(Math.min(vertical, horizontal));
-  camera.position.copy(center).addScaledVector(direction, distance);
+/** Puts the camera so that the box fills its view, seen from `direction`. */
+export function frameBox(camera: PerspectiveCamera, box: Box3, direction: Vector3 = FIRST_VIEW): void {
+  const centre = box.getCenter(new Vector3());
   camera.up.set(0, 0, 1);
-  camera.lookAt(center);
+  camera.position.copy(centre).add(direction);
+  camera.lookAt(centre);
+  const tangent = Math.tan((camera.fov * Math.PI) / 360);
+  const toCamera = camera.quaternion.clone().invert();
+  let distance = 0;
+  for (const corner of listCorners(box)) {
+    const { x, y, z } = corner.sub(centre).applyQuaternion(toCamera);
+    const across = Math.max(Math.abs(x) / (tangent * camera.aspect), Math.abs(y) / tangent);
+    distance = Math.max(distance, z + across);
+  }
+  camera.position.copy(centre).addScaledVector(direction, distance * FRAME_MARGIN);
   camera.near = distance / 100;
   camera.far = distance * 100;
   camera.updateProjectionMatrix();
+}
+
+function listCorners({ min, max }: Box3): Vector3[] {
+  return [min.x, max.x].flatMap((x) =>
+    [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new Vector3(x, y, z))),
+  );
 }
 
 /** A canvas in a container, which it fills, showing a scene from a camera that
@@ -53,7 +64,7 @@ export class Stage {
   private readonly controls: OrbitControls;
   private readonly observer: ResizeObserver;
   private readonly listeners = new Set<(statistics: FrameStatistics) => void>();
-  private framed: { readonly sphere: Sphere; readonly from: Vector3 } | null = null;
+  private framed: { readonly box: Box3; readonly from: Vector3 } | null = null;
   private request = 0;
 
   constructor(private readonly container: HTMLElement, label: string) {
@@ -98,15 +109,15 @@ export class Stage {
 
   /** Shows all of the box, seen from that direction. */
   frame(box: Box3, from: Vector3 = FIRST_VIEW): void {
-    this.framed = { sphere: box.getBoundingSphere(new Sphere()), from };
+    this.framed = { box: box.clone(), from };
     this.reset();
   }
 
   /** Back to the first view of what was framed last. */
   reset(): void {
     if (!this.framed) return;
-    frameSphere(this.camera, this.framed.sphere, this.framed.from);
-    this.controls.target.copy(this.framed.sphere.center);
+    frameBox(this.camera, this.framed.box, this.framed.from);
+    this.framed.box.getCenter(this.controls.target);
     this.controls.update();
     this.invalidate();
   }

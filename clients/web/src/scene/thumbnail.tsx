@@ -1,13 +1,14 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
-import { loadObjectModelById } from './object_model';
+import type { StoredObject } from '../api/types';
+import { loadObjectModel } from './object_model';
 import { drawThumbnail } from './thumbnail_renderer';
 
 const WIDTH = 400;
 const HEIGHT = 300;
 
 interface ThumbnailProps {
-  readonly object: string;
+  readonly object: StoredObject;
   readonly label: string;
 }
 
@@ -18,7 +19,7 @@ export function Thumbnail({ object, label }: ThumbnailProps) {
   useEffect(() => {
     let wanted = true;
     setState('waiting');
-    loadObjectModelById(object).then(
+    loadObjectModel(object).then(
       (model) => {
         if (wanted && canvas.current) {
           drawThumbnail(model, canvas.current);
@@ -35,7 +36,7 @@ export function Thumbnail({ object, label }: ThumbnailProps) {
     return () => {
       wanted = false;
     };
-  }, [object]);
+  }, [object.id]);
   return (
     <canvas
       class={`thumbnail is-${state}`}

@@ -1,8 +1,8 @@
-import { Color, PerspectiveCamera, Scene, Sphere, WebGLRenderer } from 'three';
+import { Box3, Color, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 
 import type { ObjectModel } from './object_model';
 import { ObjectMesh } from './object_mesh';
-import { addLights, frameSphere } from './stage';
+import { addLights, frameBox } from './stage';
 
 const FIELD_OF_VIEW = 28; // Degrees, as three takes it.
 
@@ -24,7 +24,7 @@ class ThumbnailRenderer {
     this.camera.aspect = width / height;
     const mesh = new ObjectMesh(model, { opacity: 1, highlighted: null });
     this.scene.add(mesh);
-    frameSphere(this.camera, model.geometry.boundingSphere ?? new Sphere());
+    frameBox(this.camera, model.geometry.boundingBox ?? new Box3());
     this.renderer.render(this.scene, this.camera);
     this.scene.remove(mesh);
     mesh.dispose();

@@ -52,7 +52,7 @@ export function BrowseView({ route }: { readonly route: BrowseRoute }) {
             current={route.category === category.name}
           >
             {example ? (
-              <Thumbnail object={example.id} label={`Example of ${category.title}`} />
+              <Thumbnail object={example} label={`Example of ${category.title}`} />
             ) : (
               <div class="thumbnail" />
             )}

@@ -29,7 +29,7 @@ function ObjectCards({ objects }: { readonly objects: readonly StoredObject[] })
     <div class="cards small">
       {objects.map((object) => (
         <Link key={object.id} class="card" to={{ view: 'object', object: object.id }}>
-          <Thumbnail object={object.id} label={describeObject(object)} />
+          <Thumbnail object={object} label={describeObject(object)} />
           <span class="card-title">{describeObject(object)}</span>
           <span class="card-note">{formatCount(object.triangles)} triangles</span>
         </Link>

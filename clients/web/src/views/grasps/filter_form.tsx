@@ -2,7 +2,7 @@ import { useEffect, useState } from 'preact/hooks';
 
 import { getCategory, listCategories, listHands } from '../../api/client';
 import { useResource } from '../../app/resource';
-import { type GraspFilters, SORTS, STAGES } from '../../app/routes';
+import { type GraspFilters, type GraspSort, SORTS, STAGES } from '../../app/routes';
 import { SelectField } from '../../ui/select_field';
 
 interface FilterFormProps {
@@ -13,9 +13,11 @@ interface FilterFormProps {
 }
 
 const ANY = '';
+/** The server's. */
+const DEFAULT_SORT: GraspSort = 'epsilon';
 const SORT_NAMES = {
   epsilon: 'Quality ε',
-  merit: 'Held in simulation, then grip',
+  merit: 'Merit',
   hybrid: 'Hybrid measure',
   robust: 'Robustness',
   newest: 'Newest',
@@ -42,8 +44,8 @@ function changeFilter(
   name: keyof GraspFilters,
   value: string | number,
 ): GraspFilters {
-  const { [name]: _, ...rest } = filters;
-  return (value === ANY || value === 0 ? rest : { ...rest, [name]: value }) as GraspFilters;
+  const { [name]: before, ...rest } = filters;
+  return value === ANY || value === 0 ? rest : { ...rest, [name]: value };
 }
 
 /** The filters of GET /v1/grasps. */
@@ -68,12 +70,11 @@ export function FilterForm({ filters, submitLabel, onSubmit }: FilterFormProps) 
     label: string,
     name: keyof GraspFilters,
     words: readonly string[],
-    names: Readonly<Record<string, string>> = {},
   ) => (
     <SelectField
       label={label}
       value={String(draft[name] ?? ANY)}
-      options={[[ANY, 'any'], ...words.map((word) => [word, names[word] ?? word] as const)]}
+      options={[[ANY, 'any'], ...words.map((word) => [word, word] as const)]}
       onChange={(value) => {
         change(name, value);
       }}
@@ -93,7 +94,14 @@ export function FilterForm({ filters, submitLabel, onSubmit }: FilterFormProps) 
       {select('Task', 'task', vocabulary.value?.tasks ?? [])}
       {select('Hand', 'hand', vocabulary.value?.hands ?? [])}
       {select('Stage', 'stage', STAGES)}
-      {submitLabel === undefined && select('Sorted by', 'sort', SORTS, SORT_NAMES)}
+      {submitLabel === undefined && (
+        <SelectField
+          label="Sorted by"
+          value={draft.sort ?? DEFAULT_SORT}
+          options={SORTS.map((sort) => [sort, SORT_NAMES[sort]] as const)}
+          onChange={(value) => { change('sort', value); }}
+        />
+      )}
       <label class="field">
         <span>ε at least</span>
         <input
@@ -107,7 +115,7 @@ export function FilterForm({ filters, submitLabel, onSubmit }: FilterFormProps) 
           }}
         />
       </label>
-      <label class="field checkbox">
+      <label class="field checkbox" title="Held in the simulator through every push">
         <input
           type="checkbox"
           checked={draft.verified === 'physical'}
@@ -115,7 +123,7 @@ export function FilterForm({ filters, submitLabel, onSubmit }: FilterFormProps) 
             change('verified', event.currentTarget.checked ? 'physical' : ANY);
           }}
         />
-        <span>Verified in simulation</span>
+        <span>Verified</span>
       </label>
       {submitLabel !== undefined && <button type="submit" class="primary">{submitLabel}</button>}
     </form>

@@ -1,7 +1,7 @@
 import type { Grasp } from '../../api/types';
 import { Link } from '../../app/navigation';
 import { Facts, type Fact } from '../../ui/facts';
-import { formatLength, formatNumber, formatShare, formatWords } from '../../ui/format';
+import { formatLength, formatNumber, formatPoint, formatShare, formatWords } from '../../ui/format';
 import { CopyJson } from './copy_json';
 
 function describeQuality({ quality }: Grasp): Fact[] {
@@ -17,13 +17,16 @@ function describeQuality({ quality }: Grasp): Fact[] {
   ];
 }
 
-function describePlace({ X_OH: { position, orientation }, penetration_m, pregrasp }: Grasp): Fact[] {
+function describePlace({
+  X_OH: { position, orientation }, penetration_m, pregrasp, clearances,
+}: Grasp): Fact[] {
   const { x, y, z, w } = orientation;
   return [
-    ['Position', `${position.map((p) => p.toFixed(4)).join(', ')} m`],
-    ['Orientation x y z w', [x, y, z, w].map((q) => q.toFixed(4)).join(', ')],
+    ['Position', `${formatPoint(position)} m`],
+    ['Orientation x y z w', formatPoint([x, y, z, w])],
     ['Pre-grasp', `${formatLength(pregrasp.distance)} back`],
     ['Penetration', formatLength(penetration_m)],
+    ...Object.entries(clearances).map(([part, gap]): Fact => [`Gap to the ${part}`, formatLength(gap)]),
   ];
 }
 
@@ -59,7 +62,7 @@ function ContactTable({ grasp: { contacts } }: { readonly grasp: Grasp }) {
           {contacts.map(({ link, p_O, seen }, index) => (
             <tr key={index}>
               <td>{link}{!seen && ' (unseen)'}</td>
-              <td class="number">{p_O.map((x) => x.toFixed(4)).join(', ')}</td>
+              <td class="number">{formatPoint(p_O)}</td>
             </tr>
           ))}
         </tbody>
@@ -70,7 +73,6 @@ function ContactTable({ grasp: { contacts } }: { readonly grasp: Grasp }) {
 
 /** A grasp in numbers. */
 export function GraspDetails({ grasp, source }: { readonly grasp: Grasp; readonly source: Grasp | null }) {
-  const clearances = Object.entries(grasp.clearances);
   return (
     <>
       <header class="panel-head">
@@ -102,9 +104,6 @@ export function GraspDetails({ grasp, source }: { readonly grasp: Grasp; readonl
       <section>
         <h3>Hand H in frame O</h3>
         <Facts facts={describePlace(grasp)} />
-        {clearances.length > 0 && (
-          <Facts facts={clearances.map(([part, gap]) => [`Gap to the ${part}`, formatLength(gap)])} />
-        )}
       </section>
       <section>
         <h3>Joints</h3>

@@ -44,9 +44,15 @@ interface GraspPictureProps {
 }
 
 /** Room for the hand around an object, m. */
-const HAND_ROOM = 0.12;
+const HAND_ROOM = 0.07;
 
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
+
+/** So that the example, which stands along x, is beside the object, from the side
+ * where the hand does not hide it. */
+function chooseDirectionAcross({ pregrasp: { approach } }: Grasp): Vector3 {
+  return new Vector3(0.12, approach[1] > 0.2 ? 1 : -1, 0.55).normalize();
+}
 
 /** From the side, so that hand and object stand beside each other. */
 function chooseDirection(grasp: Grasp): Vector3 {
@@ -73,7 +79,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
     const box = boxOf(model).clone().expandByScalar(HAND_ROOM);
     if (X_OE && source) {
       box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(HAND_ROOM));
-      stage.frame(box);
+      stage.frame(box, chooseDirectionAcross(grasp));
     } else {
       stage.frame(box, chooseDirection(grasp));
     }

@@ -6,7 +6,7 @@ import { navigate } from '../../app/navigation';
 import { useResource } from '../../app/resource';
 import type { GraspExtra, GraspFilters, Route } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
-import { FilterForm } from './filter_form';
+import { FilterBox } from './filter_box';
 import { GraspBench } from './grasp_bench';
 import { GraspList } from './grasp_list';
 
@@ -53,7 +53,7 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
     goTo({ grasp: id });
   };
   const show = (extra: GraspExtra | null): void => {
-    const { show: _, ...rest } = route;
+    const { show: before, ...rest } = route;
     navigate(extra === null ? rest : { ...rest, show: extra }, { replace: true });
   };
 
@@ -82,9 +82,9 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
     <div class="workbench three">
       <div class="workbench-list">
         <h1>Grasps</h1>
-        <FilterForm
+        <FilterBox
           filters={filters}
-          onSubmit={(changed) => {
+          onChange={(changed) => {
             navigate({ view: 'grasps', filters: changed, ...(route.show && { show: route.show }) });
           }}
         />

@@ -1,9 +1,6 @@
 import type { StoredObject } from '../../api/types';
 import { Facts, type Fact } from '../../ui/facts';
-import { formatCount, formatNumber, formatQuantity, formatShare, formatWords } from '../../ui/format';
-
-const formatPoint = (point: readonly number[]): string =>
-  point.map((coordinate) => coordinate.toFixed(4)).join(', ') + ' m';
+import { formatCount, formatNumber, formatPoint, formatQuantity, formatShare, formatWords } from '../../ui/format';
 
 function describeFile({ file_name, format, units, bytes, triangles, work_triangles }: StoredObject): Fact[] {
   return [
@@ -21,7 +18,7 @@ function describeShape({ bounding_box: { min, max }, mass_properties: mass }: St
     ['Extent', `${size.join(' × ')} m`],
     ['Volume', formatQuantity(mass.volume, 'm³')],
     ['Area', formatQuantity(mass.area, 'm²')],
-    ['Centre of mass', formatPoint(mass.centre)],
+    ['Centre of mass', `${formatPoint(mass.centre)} m`],
     ['Largest radius', formatQuantity(mass.max_radius, 'm')],
   ];
 }

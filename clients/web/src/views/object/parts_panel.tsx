@@ -51,9 +51,9 @@ export function PartsPanel({ object, parts, labels, onHighlight, onChange }: Par
           <thead>
             <tr>
               <th>Label</th>
-              <th class="number">Area</th>
-              <th class="number">Volume</th>
-              <th class="number">Sure</th>
+              <th class="number">Area (m²)</th>
+              <th class="number">Volume (m³)</th>
+              <th class="number">Confidence</th>
             </tr>
           </thead>
           <tbody>
@@ -79,8 +79,8 @@ export function PartsPanel({ object, parts, labels, onHighlight, onChange }: Par
                     </select>
                   </span>
                 </td>
-                <td class="number">{formatQuantity(part.area, 'm²')}</td>
-                <td class="number">{formatQuantity(part.volume, 'm³')}</td>
+                <td class="number">{formatQuantity(part.area)}</td>
+                <td class="number">{formatQuantity(part.volume)}</td>
                 <td class="number">{formatShare(part.confidence)}</td>
               </tr>
             ))}

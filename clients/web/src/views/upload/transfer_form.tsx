@@ -7,22 +7,19 @@ import { useResource } from '../../app/resource';
 import { Thumbnail } from '../../scene/thumbnail';
 import { describeObject } from '../../ui/object_name';
 import { ProblemNote } from '../../ui/problem_note';
-
-const DEFAULT_SOURCES = 40;
-const DEFAULT_FRICTION = 0.5;
+import { DEFAULT_SETTINGS, TransferOptions } from './transfer_options';
 
 /** Starts a transfer to an object that is stored already. */
 export function TransferForm({ object: id }: { readonly object: string }) {
   const object = useResource(id, () => getObject(id));
-  const [sources, setSources] = useState(DEFAULT_SOURCES);
-  const [friction, setFriction] = useState(DEFAULT_FRICTION);
+  const [settings, setSettings] = useState(DEFAULT_SETTINGS);
   const [busy, setBusy] = useState(false);
   const [problem, setProblem] = useState<ProblemError | null>(null);
   const start = async (): Promise<void> => {
     setBusy(true);
     setProblem(null);
     try {
-      const job = await startTransfer({ object: id, sources, friction });
+      const job = await startTransfer({ object: id, ...settings });
       navigate({ view: 'upload', object: id, job: job.id });
     } catch (error) {
       setProblem(toProblem(error));
@@ -38,7 +35,11 @@ export function TransferForm({ object: id }: { readonly object: string }) {
         <Link to={{ view: 'object', object: id }}>{object.value ? describeObject(object.value) : '…'}</Link>
       </p>
       <div class="card still">
-        <Thumbnail object={id} label="The object" />
+        {object.value ? (
+          <Thumbnail object={object.value} label="The object" />
+        ) : (
+          <div class="thumbnail" />
+        )}
       </div>
       <form
         class="upload"
@@ -48,16 +49,7 @@ export function TransferForm({ object: id }: { readonly object: string }) {
         }}
       >
         <div class="upload-options">
-          <label class="field">
-            <span>Source grasps per part</span>
-            <input type="number" min="1" max="1000" value={sources}
-              onChange={(event) => { setSources(Number(event.currentTarget.value)); }} />
-          </label>
-          <label class="field">
-            <span>Friction μ</span>
-            <input type="number" min="0.01" max="2" step="0.01" value={friction}
-              onChange={(event) => { setFriction(Number(event.currentTarget.value)); }} />
-          </label>
+          <TransferOptions settings={settings} onChange={setSettings} />
         </div>
         <button type="submit" class="primary" disabled={busy}>
           {busy ? 'Starting …' : 'Find grasps'}

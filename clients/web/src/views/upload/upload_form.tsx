@@ -8,6 +8,7 @@ import { useResource } from '../../app/resource';
 import { ProblemNote } from '../../ui/problem_note';
 import { SelectField } from '../../ui/select_field';
 import { DropZone } from './drop_zone';
+import { DEFAULT_SETTINGS, TransferOptions } from './transfer_options';
 
 const AUTO = 'auto';
 const OWN_UNITS = '';
@@ -35,6 +36,7 @@ export function UploadForm() {
   const [file, setFile] = useState<File | null>(null);
   const [units, setUnits] = useState<string>(OWN_UNITS);
   const [category, setCategory] = useState(AUTO);
+  const [settings, setSettings] = useState(DEFAULT_SETTINGS);
   const [stage, setStage] = useState<Stage>('ready');
   const [problem, setProblem] = useState<ProblemError | null>(null);
 
@@ -44,7 +46,7 @@ export function UploadForm() {
       setStage('storing');
       const object = await postObject(chosen, { category, ...(isUnits(units) && { units }) });
       setStage('starting');
-      const job = await startTransfer({ object: object.id });
+      const job = await startTransfer({ object: object.id, ...settings });
       navigate({ view: 'upload', object: object.id, job: job.id });
     } catch (error) {
       setProblem(toProblem(error));
@@ -78,6 +80,7 @@ export function UploadForm() {
             ]}
             onChange={setCategory}
           />
+          <TransferOptions settings={settings} onChange={setSettings} />
         </div>
         <button type="submit" class="primary" disabled={!file || stage !== 'ready'}>
           <span aria-live="polite">{DOING[stage]}</span>
