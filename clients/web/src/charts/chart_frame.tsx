@@ -60,7 +60,8 @@ export function ChartFrame({
   const room = Math.max(width - left - MARGIN.right, 0);
   const plotWidth = square ? Math.min(room, plotHeight) : room;
   const bottom = MARGIN.top + plotHeight;
-  const xScale = makeLinearScale(x.domain, [left, left + plotWidth]);
+  const start = left + (room - plotWidth) / 2;
+  const xScale = makeLinearScale(x.domain, [start, start + plotWidth]);
   const yScale = makeLinearScale(y.domain, [bottom, MARGIN.top]);
   return (
     <figure class="chart">
@@ -73,8 +74,8 @@ export function ChartFrame({
           <svg width={width} height={HEIGHT} role="img" aria-label={`${title}. ${summary}`}>
             {tickPairs(y, plotHeight).map(([value, text]) => (
               <g key={value} class="tick">
-                <line x1={left} x2={left + plotWidth} y1={yScale.toPixel(value)} y2={yScale.toPixel(value)} />
-                <text x={left - 8} y={yScale.toPixel(value)} dy="0.32em" text-anchor="end">{text}</text>
+                <line x1={start} x2={start + plotWidth} y1={yScale.toPixel(value)} y2={yScale.toPixel(value)} />
+                <text x={start - 8} y={yScale.toPixel(value)} dy="0.32em" text-anchor="end">{text}</text>
               </g>
             ))}
             {tickPairs(x, plotWidth).map(([value, text]) => (
@@ -84,11 +85,11 @@ export function ChartFrame({
               </g>
             ))}
             {children(xScale, yScale)}
-            <path class="axis" d={`M${left} ${MARGIN.top}V${bottom}H${left + plotWidth}`} />
-            <text class="axis-label" x={left + plotWidth / 2} y={HEIGHT - 8} text-anchor="middle">{x.label}</text>
+            <path class="axis" d={`M${start} ${MARGIN.top}V${bottom}H${start + plotWidth}`} />
+            <text class="axis-label" x={start + plotWidth / 2} y={HEIGHT - 8} text-anchor="middle">{x.label}</text>
             <text
               class="axis-label"
-              transform={`translate(12 ${MARGIN.top + plotHeight / 2}) rotate(-90)`}
+              transform={`translate(${start - left + 12} ${MARGIN.top + plotHeight / 2}) rotate(-90)`}
               text-anchor="middle"
             >
               {y.label}

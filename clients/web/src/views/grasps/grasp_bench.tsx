@@ -14,6 +14,8 @@ import { getGrasp } from '../../api/client';
 
 interface GraspBenchProps {
   readonly grasp: Grasp | null;
+  /** Whether the record that it comes from is stored; not while it is made. */
+  readonly recorded: boolean;
   /** Listed grasps of the same hand on the same object. */
   readonly others: readonly Grasp[];
   readonly show: GraspExtra | null;
@@ -21,8 +23,8 @@ interface GraspBenchProps {
 }
 
 /** One grasp: picture, motion, comparison with where it comes from, numbers. */
-export function GraspBench({ grasp, others, show, onShow }: GraspBenchProps) {
-  const lineage = useResource(grasp?.id ?? null, () => {
+export function GraspBench({ grasp, recorded, others, show, onShow }: GraspBenchProps) {
+  const lineage = useResource(grasp && recorded ? grasp.id : null, () => {
     if (!grasp) throw new Error('There is no grasp to follow.');
     return loadLineage(grasp);
   });
@@ -67,7 +69,7 @@ export function GraspBench({ grasp, others, show, onShow }: GraspBenchProps) {
             <button
               type="button"
               aria-pressed={show === 'source'}
-              disabled={lineage.value !== null && lineage.value.source === null}
+              disabled={lineage.value?.source === null || !recorded}
               onClick={() => { onShow(show === 'source' ? null : 'source'); }}
             >
               Source grasp

@@ -34,7 +34,7 @@ export interface SourceOfGrasp {
 interface GraspPictureProps {
   readonly grasp: Grasp | null;
   readonly model: ObjectModel | null;
-  /** Null: not known yet, no cones are drawn. */
+  /** Null: not known yet; contacts then have no cones. */
   readonly friction: number | null;
   /** 0 at the pre-grasp, 1 at the grasp. */
   readonly progress: number;
@@ -43,10 +43,21 @@ interface GraspPictureProps {
   readonly source: SourceOfGrasp | null;
 }
 
-/** Room for the hand around an object, m. */
-const HAND_ROOM = 0.07;
+/** Room around an object and around the base of a hand, m. */
+const ROOM = 0.04;
+/** Room around an example with its hand, m. */
+const EXAMPLE_ROOM = 0.08;
 
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
+
+/** The object and the way of the hand. */
+function makeBoxOfMotion(box_O: Box3, { X_OH, pregrasp }: Grasp): Box3 {
+  return box_O
+    .clone()
+    .expandByPoint(toVector(X_OH.position))
+    .expandByPoint(toVector(pregrasp.X_OH.position))
+    .expandByScalar(ROOM);
+}
 
 /** So that the example, which stands along x, is beside the object, from the side
  * where the hand does not hide it. */
@@ -76,9 +87,9 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useEffect(() => {
     if (!stage || !ready) return;
-    const box = boxOf(model).clone().expandByScalar(HAND_ROOM);
+    const box = makeBoxOfMotion(boxOf(model), grasp);
     if (X_OE && source) {
-      box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(HAND_ROOM));
+      box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(EXAMPLE_ROOM));
       stage.frame(box, chooseDirectionAcross(grasp));
     } else {
       stage.frame(box, chooseDirection(grasp));
@@ -105,7 +116,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useOnStage(
     stage,
-    () => (ready && friction !== null ? new ContactMarks(grasp.contacts, friction) : null),
+    () => (ready ? new ContactMarks(grasp.contacts, friction) : null),
     [ready, grasp, friction],
   );
 
@@ -128,7 +139,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
   useOnStage(
     stage,
     () =>
-      hand.value && X_OE && source && friction !== null
+      hand.value && X_OE && source
         ? new SourceGroup(source, X_OE, new HandMesh(hand.value, handColour(dark)), friction)
         : null,
     [hand.value, X_OE, source?.grasp, friction, dark],
@@ -156,7 +167,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
       <div class="viewport-legend">
         <PartLegend parts={model?.parts ?? []} />
         <ul class="legend">
-          <li><Swatch colour={CONTACT_COLOUR} /> contact, friction cone{friction !== null && ` μ = ${friction}`}</li>
+          <li><Swatch colour={CONTACT_COLOUR} /> contact{friction !== null && `, friction cone μ = ${friction}`}</li>
           {source && <li><Swatch colour={lineColour(dark)} /> contact → mapped contact</li>}
           {ghosts && (
             <li>
@@ -177,7 +188,7 @@ const topOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.max.
 class SourceGroup extends Group {
   private readonly pieces: readonly { dispose(): void }[];
 
-  constructor({ grasp, model }: SourceOfGrasp, X_OE: Matrix4, hand: HandMesh, friction: number) {
+  constructor({ grasp, model }: SourceOfGrasp, X_OE: Matrix4, hand: HandMesh, friction: number | null) {
     super();
     const object = new ObjectMesh(model, { opacity: 1, highlighted: null });
     const contacts = new ContactMarks(grasp.contacts, friction);

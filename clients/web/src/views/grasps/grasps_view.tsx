@@ -99,6 +99,7 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
       </div>
       <GraspBench
         grasp={grasp}
+        recorded
         others={onSameObject}
         show={route.show ?? null}
         onShow={show}

@@ -63,7 +63,13 @@ export function JobProgress({ id }: { readonly id: string }) {
             chosen={grasp?.id ?? null} onChoose={setChosen} />
         )}
       </div>
-      <GraspBench grasp={grasp} others={grasps} show={show} onShow={setShow} />
+      <GraspBench
+        grasp={grasp}
+        recorded={transfer !== null}
+        others={grasps}
+        show={show}
+        onShow={setShow}
+      />
     </div>
   );
 }
