@@ -1,4 +1,6 @@
 /** What holds for every page: accessible, no wider than a phone, steady, strict. */
+import { readFileSync } from 'node:fs';
+
 import axe from 'axe-core';
 import type { Page } from 'playwright-core';
 import { describe, expect, inject, it } from 'vitest';
@@ -68,6 +70,11 @@ describe.each(pages)('%s', (name, path) => {
 });
 
 describe('the server', () => {
+  it('serves the page that lies in clients/web/dist', async () => {
+    const page = await (await fetch(`${inject('url')}/`)).text();
+    expect(page).toBe(readFileSync('../../clients/web/dist/index.html', 'utf8'));
+  });
+
   it('forbids whatever does not come from itself', async () => {
     const { headers } = await fetch(`${inject('url')}/`);
     const policy = headers.get('content-security-policy') ?? '';

@@ -1,12 +1,14 @@
 import { useEffect } from 'preact/hooks';
 
 import { BrowseView } from '../views/browse/browse_view';
-import { GraspsView } from '../views/grasps/grasps_view';
 import { InsightView } from '../views/insight/insight_view';
-import { ObjectView } from '../views/object/object_view';
 import { UploadView } from '../views/upload/upload_view';
+import { lazyView } from './lazy_view';
 import { Link, useRoute } from './navigation';
 import type { Route } from './routes';
+
+const GraspsView = lazyView(async () => (await import('../views/grasps/grasps_view')).GraspsView);
+const ObjectView = lazyView(async () => (await import('../views/object/object_view')).ObjectView);
 
 const SECTIONS: readonly (readonly [title: string, route: Route])[] = [
   ['Browse', { view: 'browse' }],

@@ -66,7 +66,7 @@ export function ChartFrame({
   return (
     <figure class="chart">
       <figcaption>
-        <h3>{title}</h3>
+        <h2>{title}</h2>
         {legend}
       </figcaption>
       <div class="chart-place" ref={element}>

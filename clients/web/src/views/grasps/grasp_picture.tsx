@@ -10,7 +10,8 @@ import { loadHandModel } from '../../robot/hand_model';
 import { toSimilarity, toVector } from '../../robot/pose';
 import { ContactMarks } from '../../scene/contact_marks';
 import { FloorGrid, GRID_CELL } from '../../scene/floor_grid';
-import { HandMesh, HandSwarm } from '../../scene/hand_mesh';
+import { HandMesh } from '../../scene/hand_mesh';
+import { HandSwarm } from '../../scene/hand_swarm';
 import { MappingLines } from '../../scene/mapping_lines';
 import type { ObjectModel } from '../../scene/object_model';
 import { ObjectMesh } from '../../scene/object_mesh';
@@ -45,6 +46,8 @@ interface GraspPictureProps {
 
 /** Room around an object and around the base of a hand, m. */
 const ROOM = 0.04;
+/** Room for hands on all sides of an object, m. */
+const SWARM_ROOM = 0.1;
 /** Room around an example with its hand, m. */
 const EXAMPLE_ROOM = 0.08;
 
@@ -87,14 +90,16 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useEffect(() => {
     if (!stage || !ready) return;
-    const box = makeBoxOfMotion(boxOf(model), grasp);
+    const box = ghosts
+      ? boxOf(model).clone().expandByScalar(SWARM_ROOM)
+      : makeBoxOfMotion(boxOf(model), grasp);
     if (X_OE && source) {
       box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(EXAMPLE_ROOM));
       stage.frame(box, chooseDirectionAcross(grasp));
     } else {
       stage.frame(box, chooseDirection(grasp));
     }
-  }, [stage, ready, model?.object.id, X_OE]);
+  }, [stage, ready, model?.object.id, X_OE, ghosts !== null]);
 
   useOnStage(
     stage,

@@ -82,7 +82,7 @@ function Coverage({ spaces }: { readonly spaces: readonly GraspSpace[] }) {
 function TransferTable({ transfers }: { readonly transfers: readonly TransferItem[] }) {
   return (
     <section>
-      <h3>Newest transfers</h3>
+      <h2>Newest transfers</h2>
       <div class="scroll transfers">
         <table>
           <thead>
