@@ -7,6 +7,8 @@ import { makeLinearScale, makeTicks, type Scale } from './scale';
 export interface Axis {
   readonly label: string;
   readonly domain: readonly [number, number];
+  /** Whether it counts things, of which there are no halves. */
+  readonly counts?: boolean;
   /** Default: round numbers. */
   readonly ticks?: readonly (readonly [value: number, text: string])[];
 }
@@ -29,11 +31,14 @@ const HEIGHT = 300;
 const MARGIN = { top: 12, right: 16, bottom: 44, left: 52 };
 const TICK_GAP = 80; // px
 
-function tickPairs({ ticks, domain }: Axis, length: number): readonly (readonly [number, string])[] {
-  return (
-    ticks ??
-    makeTicks(domain, Math.max(2, Math.floor(length / TICK_GAP))).map((value) => [value, String(value)] as const)
-  );
+function tickPairs(
+  { ticks, domain, counts = false }: Axis,
+  length: number,
+): readonly (readonly [number, string])[] {
+  if (ticks) return ticks;
+  return makeTicks(domain, Math.max(2, Math.floor(length / TICK_GAP)))
+    .filter((value) => !counts || Number.isInteger(value))
+    .map((value) => [value, String(value)] as const);
 }
 
 function useWidth() {

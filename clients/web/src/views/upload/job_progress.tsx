@@ -9,8 +9,7 @@ import { useResource } from '../../app/resource';
 import type { GraspExtra } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
 import { GraspBench } from '../grasps/grasp_bench';
-import { GraspList } from '../grasps/grasp_list';
-import { MOST_GRASPS } from '../grasps/grasps_view';
+import { GraspList, MOST_GRASPS } from '../grasps/grasp_list';
 import { addGrasp } from './found_grasps';
 import { StageLog, useStageLog } from './stage_log';
 
