@@ -1,5 +1,5 @@
 import { type ChildProcess, execFileSync, spawn } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, rmSync, symlinkSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -30,21 +30,29 @@ export class Graspdb {
     mkdirSync(hands);
     symlinkSync(join(requirePath('GRASPDB_DATA'), 'hands'), join(hands, 'hands'));
     execFileSync(binary, ['populate', hands, '--db', database], { stdio: 'ignore' });
+    const log = join(folder, 'log');
     const child = spawn(binary, ['serve', '--db', database, '--port', '0', '--port-file', portFile], {
-      stdio: ['ignore', 'ignore', 'inherit'],
+      stdio: ['ignore', 'ignore', openSync(log, 'w')],
     });
     const end = Date.now() + START_LIMIT;
     while (!existsSync(portFile)) {
-      if (child.exitCode !== null || Date.now() > end) throw new Error('graspdb did not start');
+      if (child.exitCode !== null || Date.now() > end) {
+        throw new Error(`graspdb did not start:\n${readFileSync(log, 'utf8')}`);
+      }
       await sleep(20);
     }
     return new Graspdb(child, folder, `http://127.0.0.1:${readFileSync(portFile, 'utf8').trim()}`);
   }
 
+  /** Ends it; throws if something had gone wrong inside it. */
   async stop(): Promise<void> {
     const ended = new Promise((resolve) => this.process.once('exit', resolve));
     this.process.kill('SIGTERM');
     await ended;
+    const faults = readFileSync(join(this.folder, 'log'), 'utf8')
+      .split('\n')
+      .filter((line) => line.includes('event=internal'));
     rmSync(this.folder, { recursive: true, force: true });
+    if (faults.length > 0) throw new Error(faults.join('\n'));
   }
 }

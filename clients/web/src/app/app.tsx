@@ -3,6 +3,7 @@ import { useEffect } from 'preact/hooks';
 import { BrowseView } from '../views/browse/browse_view';
 import { InsightView } from '../views/insight/insight_view';
 import { UploadView } from '../views/upload/upload_view';
+import { Footer } from './footer';
 import { lazyView } from './lazy_view';
 import { Link, useRoute } from './navigation';
 import type { Route } from './routes';
@@ -65,6 +66,7 @@ export function App() {
       <main id="main" tabIndex={-1}>
         <CurrentView route={route} />
       </main>
+      {route.view === 'browse' && <Footer />}
     </>
   );
 }

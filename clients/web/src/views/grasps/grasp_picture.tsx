@@ -47,9 +47,7 @@ interface GraspPictureProps {
 /** Room around an object and around the base of a hand, m. */
 const ROOM = 0.04;
 /** Room for hands on all sides of an object, m. */
-const SWARM_ROOM = 0.1;
-/** Room around an example with its hand, m. */
-const EXAMPLE_ROOM = 0.08;
+const HAND_ROOM = 0.09;
 
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
 
@@ -65,7 +63,7 @@ function makeBoxOfMotion(box_O: Box3, { X_OH, pregrasp }: Grasp): Box3 {
 /** So that the example, which stands along x, is beside the object, from the side
  * where the hand does not hide it. */
 function chooseDirectionAcross({ pregrasp: { approach } }: Grasp): Vector3 {
-  return new Vector3(0.12, approach[1] > 0.2 ? 1 : -1, 0.55).normalize();
+  return new Vector3(0, approach[1] > 0.2 ? 1 : -1, 0.4).normalize();
 }
 
 /** From the side, so that hand and object stand beside each other. */
@@ -90,14 +88,13 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useEffect(() => {
     if (!stage || !ready) return;
-    const box = ghosts
-      ? boxOf(model).clone().expandByScalar(SWARM_ROOM)
-      : makeBoxOfMotion(boxOf(model), grasp);
     if (X_OE && source) {
-      box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(EXAMPLE_ROOM));
-      stage.frame(box, chooseDirectionAcross(grasp));
+      const box = boxOf(source.model).clone().applyMatrix4(X_OE).union(boxOf(model));
+      stage.frame(box.expandByScalar(HAND_ROOM), chooseDirectionAcross(grasp));
+    } else if (ghosts) {
+      stage.frame(boxOf(model).clone().expandByScalar(HAND_ROOM), chooseDirection(grasp));
     } else {
-      stage.frame(box, chooseDirection(grasp));
+      stage.frame(makeBoxOfMotion(boxOf(model), grasp), chooseDirection(grasp));
     }
   }, [stage, ready, model?.object.id, X_OE, ghosts !== null]);
 
@@ -163,8 +160,8 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
     >
       {stage && X_OE && source && model && (
         <>
-          <SceneLabel stage={stage} point={topOf(boxOf(model))}>{name}</SceneLabel>
-          <SceneLabel stage={stage} point={topOf(boxOf(source.model)).applyMatrix4(X_OE)}>
+          <SceneLabel stage={stage} point={bottomOf(boxOf(model))}>{name}</SceneLabel>
+          <SceneLabel stage={stage} point={bottomOf(boxOf(source.model)).applyMatrix4(X_OE)}>
             example {describeObject(source.model.object)}
           </SceneLabel>
         </>
@@ -187,7 +184,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
   );
 }
 
-const topOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.max.z);
+const bottomOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.min.z);
 
 /** The example with the source grasp, at X_OE. */
 class SourceGroup extends Group {
