@@ -1,5 +1,6 @@
 import { useEffect, useState } from 'preact/hooks';
 
+import { getGrasp } from '../../api/client';
 import type { Grasp, GraspStage } from '../../api/types';
 import { useResource } from '../../app/resource';
 import type { GraspExtra } from '../../app/routes';
@@ -10,7 +11,6 @@ import { GraspPicture } from './grasp_picture';
 import { loadLineage } from './lineage';
 import { MotionControl } from './motion_control';
 import { StageSwitch } from './stage_switch';
-import { getGrasp } from '../../api/client';
 
 interface GraspBenchProps {
   readonly grasp: Grasp | null;
@@ -42,6 +42,8 @@ export function GraspBench({ grasp, recorded, others, show, onShow }: GraspBench
   const source = show === 'source' ? (lineage.value?.source ?? null) : null;
   const model = useResource(shown?.object ?? null, () => loadObjectModelById(shown?.object ?? ''));
   const sourceModel = useResource(source?.object ?? null, () => loadObjectModelById(source?.object ?? ''));
+  useEffect(() => () => model.value?.geometry.dispose(), [model.value]);
+  useEffect(() => () => sourceModel.value?.geometry.dispose(), [sourceModel.value]);
   const problem = model.problem ?? sourceModel.problem ?? lineage.problem ?? other.problem;
   return (
     <>

@@ -1,18 +1,15 @@
 import { useEffect, useMemo, useState } from 'preact/hooks';
-import { Box3, Group, Matrix4, Vector3 } from 'three';
+import { Box3, Vector3 } from 'three';
 
-import type { ContactMap, Grasp } from '../../api/types';
+import type { Grasp } from '../../api/types';
 import { useDark } from '../../app/media';
 import { useResource } from '../../app/resource';
-import { pairContacts } from '../../robot/contact_pairs';
 import { calcHandState } from '../../robot/grasp_motion';
 import { loadHandModel } from '../../robot/hand_model';
-import { toSimilarity, toVector } from '../../robot/pose';
 import { ContactMarks } from '../../scene/contact_marks';
 import { FloorGrid, GRID_CELL } from '../../scene/floor_grid';
 import { HandMesh } from '../../scene/hand_mesh';
 import { HandSwarm } from '../../scene/hand_swarm';
-import { MappingLines } from '../../scene/mapping_lines';
 import type { ObjectModel } from '../../scene/object_model';
 import { ObjectMesh } from '../../scene/object_mesh';
 import { placeBeside } from '../../scene/place_beside';
@@ -24,13 +21,8 @@ import { CONTACT_COLOUR, gridColour, handColour, lineColour, rampColour } from '
 import { PartLegend } from '../../ui/part_legend';
 import { Swatch } from '../../ui/swatch';
 import { formatNumber } from '../../ui/format';
-
-/** Where a transferred grasp comes from, to be shown beside it. */
-export interface SourceOfGrasp {
-  readonly grasp: Grasp;
-  readonly model: ObjectModel;
-  readonly contactMap: ContactMap;
-}
+import { chooseDirection, chooseDirectionAcross, HAND_ROOM, makeBoxOfMotion } from './framing';
+import { makeMappingLines, SourceGroup, type SourceOfGrasp } from './source_group';
 
 interface GraspPictureProps {
   readonly grasp: Grasp | null;
@@ -44,34 +36,8 @@ interface GraspPictureProps {
   readonly source: SourceOfGrasp | null;
 }
 
-/** Room around an object and around the base of a hand, m. */
-const ROOM = 0.04;
-/** Room for hands on all sides of an object, m. */
-const HAND_ROOM = 0.09;
-
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
-
-/** The object and the way of the hand. */
-function makeBoxOfMotion(box_O: Box3, { X_OH, pregrasp }: Grasp): Box3 {
-  return box_O
-    .clone()
-    .expandByPoint(toVector(X_OH.position))
-    .expandByPoint(toVector(pregrasp.X_OH.position))
-    .expandByScalar(ROOM);
-}
-
-/** So that the example, which stands along x, is beside the object, from the side
- * where the hand does not hide it. */
-function chooseDirectionAcross({ pregrasp: { approach } }: Grasp): Vector3 {
-  return new Vector3(0, approach[1] > 0.2 ? 1 : -1, 0.4).normalize();
-}
-
-/** From the side, so that hand and object stand beside each other. */
-function chooseDirection(grasp: Grasp): Vector3 {
-  const [x, y] = grasp.pregrasp.approach;
-  const side = Math.hypot(x, y) > 0.2 ? new Vector3(y, -x, 0).normalize() : new Vector3(0.4, -1, 0).normalize();
-  return side.setZ(0.45).normalize();
-}
+const bottomOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.min.z);
 
 /** A grasp on its object. */
 export function GraspPicture({ grasp, model, friction, progress, ghosts, source }: GraspPictureProps) {
@@ -182,39 +148,4 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
       </div>
     </Viewport>
   );
-}
-
-const bottomOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.min.z);
-
-/** The example with the source grasp, at X_OE. */
-class SourceGroup extends Group {
-  private readonly pieces: readonly { dispose(): void }[];
-
-  constructor({ grasp, model }: SourceOfGrasp, X_OE: Matrix4, hand: HandMesh, friction: number | null) {
-    super();
-    const object = new ObjectMesh(model, { opacity: 1, highlighted: null });
-    const contacts = new ContactMarks(grasp.contacts, friction);
-    this.add(object, hand.setState(calcHandState(grasp, 1)), contacts);
-    this.pieces = [object, hand, contacts];
-    this.applyMatrix4(X_OE);
-  }
-
-  override dispose(): void {
-    super.dispose();
-    for (const piece of this.pieces) piece.dispose();
-  }
-}
-
-function makeMappingLines(
-  { grasp: source, contactMap: { X_NE, scale } }: SourceOfGrasp,
-  grasp: Grasp,
-  X_OE: Matrix4,
-  colour: string,
-): MappingLines {
-  const pairs = pairContacts(source.contacts, grasp.contacts, toSimilarity(X_NE, scale));
-  const mapped = pairs.map(({ p_E, p_N }) => ({ from: p_E.clone().applyMatrix4(X_OE), to: p_N }));
-  const reached = grasp.contacts.flatMap(({ p_O, mapped_p_O }) =>
-    mapped_p_O === null ? [] : [{ from: toVector(mapped_p_O), to: toVector(p_O) }],
-  );
-  return new MappingLines([...mapped, ...reached], colour);
 }

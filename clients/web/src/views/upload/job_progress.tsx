@@ -2,7 +2,7 @@ import { useEffect, useReducer, useState } from 'preact/hooks';
 
 import { cancelJob, queryGrasps } from '../../api/client';
 import { followJob, isFinished } from '../../api/job_events';
-import { ProblemError } from '../../api/problem';
+import { ProblemError, toProblem } from '../../api/problem';
 import type { Grasp, Job } from '../../api/types';
 import { Link } from '../../app/navigation';
 import { useResource } from '../../app/resource';
@@ -44,7 +44,7 @@ export function JobProgress({ id }: { readonly id: string }) {
         {problem && <ProblemNote problem={problem} />}
         <p class="actions">
           {job && !isFinished(job) && (
-            <button type="button" onClick={() => { cancelJob(id).then(setJob, () => undefined); }}>
+            <button type="button" onClick={() => { cancelJob(id).then(setJob, (error: unknown) => { setLost(toProblem(error)); }); }}>
               Cancel
             </button>
           )}
