@@ -56,12 +56,16 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
     if (!stage || !ready) return;
     if (X_OE && source) {
       const box = boxOf(source.model).clone().applyMatrix4(X_OE).union(boxOf(model));
-      stage.frame(box.expandByScalar(HAND_ROOM), chooseDirectionAcross(grasp));
+      stage.setHome(box.expandByScalar(HAND_ROOM), chooseDirectionAcross(grasp));
     } else if (ghosts) {
-      stage.frame(boxOf(model).clone().expandByScalar(HAND_ROOM), chooseDirection(grasp));
+      stage.setHome(boxOf(model).clone().expandByScalar(HAND_ROOM), chooseDirection(grasp));
     } else {
-      stage.frame(makeBoxOfMotion(boxOf(model), grasp), chooseDirection(grasp));
+      stage.setHome(makeBoxOfMotion(boxOf(model), grasp), chooseDirection(grasp));
     }
+  }, [stage, ready, grasp, model, X_OE, ghosts !== null]);
+  // Stepping through grasps leaves the view as it is; the button brings it round.
+  useEffect(() => {
+    if (ready) stage?.reset();
   }, [stage, ready, model?.object.id, X_OE, ghosts !== null]);
 
   useOnStage(
