@@ -2,7 +2,8 @@
 import { readProblem } from './problem';
 import type {
   Category, Grasp, GraspQuery, GraspSpace, GraspSpaceQuery, Hand, Job, ObjectQuery, Page,
-  Parameter, Part, SettingValues, StoredObject, Transfer, TransferItem, TransferQuery, UploadQuery,
+  Parameter, Part, SettingValues, StoredObject, Transfer, TransferItem, TransferListQuery,
+  TransferQuery, UploadQuery,
 } from './types';
 
 type QueryValue = string | number | boolean | undefined;
@@ -88,11 +89,8 @@ export const getGrasp = (id: string): Promise<Grasp> => getJson(`/v1/grasps/${id
 
 export const getTransfer = (id: string): Promise<Transfer> => getJson(`/v1/transfers/${id}`);
 
-export const listTransfers = (query: {
-  readonly category?: string;
-  readonly object?: string;
-  readonly limit?: number;
-}): Promise<Page<TransferItem>> => getJson(withQuery('/v1/transfers', query));
+export const listTransfers = (query: TransferListQuery): Promise<Page<TransferItem>> =>
+  getJson(withQuery('/v1/transfers', { ...query }));
 
 export const listHands = (): Promise<Page<Hand>> => getJson('/v1/hands');
 

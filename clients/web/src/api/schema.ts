@@ -11,8 +11,27 @@ export interface paths {
             readonly path?: never;
             readonly cookie?: never;
         };
-        /** The operations and a first curl line, for people. */
-        readonly get: operations["getLandingPage"];
+        /** The web viewer. */
+        readonly get: operations["getViewer"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/assets/{file}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly file: string;
+            };
+            readonly cookie?: never;
+        };
+        /** A script, style sheet or picture of the web viewer. */
+        readonly get: operations["getViewerFile"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -47,6 +66,23 @@ export interface paths {
         };
         /** Whether requests can be answered now. */
         readonly get: operations["getReadiness"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/metrics": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /** Counters and gauges in Prometheus' text format. */
+        readonly get: operations["getMetrics"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -128,6 +164,23 @@ export interface paths {
         };
         /** A picture of the hand on the object, coloured by part. */
         readonly get: operations["drawGrasp"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/v1/transfers": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /** The transfers, newest first. */
+        readonly get: operations["listTransfers"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -452,6 +505,27 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/v1/hands/{name}/meshes/{file}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly name: components["parameters"]["NamePath"];
+                /** @description The name of a mesh in the URDF, without folders. */
+                readonly file: string;
+            };
+            readonly cookie?: never;
+        };
+        /** One of the meshes that the hand's URDF refers to. */
+        readonly get: operations["getHandMesh"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/v1/parameters": {
         readonly parameters: {
             readonly query?: never;
@@ -501,6 +575,28 @@ export interface paths {
         readonly post?: never;
         /** Cancel a job. One that has ended stays as it is. */
         readonly delete: operations["cancelJob"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/v1/jobs/{id}/events": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly id: components["parameters"]["UuidPath"];
+            };
+            readonly cookie?: never;
+        };
+        /**
+         * A job as it goes on, as server-sent events.
+         * @description Events are `job`, whose data is the job as GET /v1/jobs/{id} answers it, at first and whenever it has changed; and `grasp`, whose data is a grasp of the stage asked for, as soon as a transfer has found it and before it is stored. The stream ends with the job. An event's id says how far one has come: a client that comes back sends it as Last-Event-ID and gets what is new, except that a grasp may come again, of the same id, when the job has ended or begun anew meanwhile.
+         */
+        readonly get: operations["streamJob"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
         readonly patch?: never;
@@ -744,6 +840,8 @@ export interface components {
             readonly summary: components["schemas"]["TransferSummary"];
             /** @description False when a deadline cut the work short. */
             readonly complete: boolean;
+            /** @description Sources were tried only until so many grasps were sure; null means that all were. */
+            readonly enough: number | null;
             /** @description Of the stage asked for, best first. */
             readonly grasps: readonly components["schemas"]["Grasp"][];
             readonly rejected: readonly {
@@ -770,6 +868,8 @@ export interface components {
             readonly sources_per_part: number;
             readonly similarity: components["schemas"]["Share"];
             readonly complete: boolean;
+            /** @description Sources were tried only until so many grasps were sure; null means that all were. */
+            readonly enough: number | null;
             readonly summary: components["schemas"]["TransferSummary"];
             readonly contact_maps: readonly {
                 readonly id: components["schemas"]["ContentId"];
@@ -803,6 +903,36 @@ export interface components {
             readonly parameters: components["schemas"]["ParameterValues"];
             readonly provenance: components["schemas"]["Provenance"];
             readonly created_at: components["schemas"]["Time"];
+        };
+        /** @description A transfer as in a list, without its attempts. */
+        readonly TransferOverview: {
+            readonly id: components["schemas"]["ContentId"];
+            readonly object: components["schemas"]["Uuid"];
+            readonly example: components["schemas"]["Uuid"];
+            readonly category: string;
+            readonly hand: string;
+            /** @enum {string} */
+            readonly stage: "transfer" | "assembly";
+            readonly parts: readonly string[];
+            /** @description Parts that the hand keeps transfer.min_clearance off. */
+            readonly keep_free: readonly string[];
+            readonly sources_per_part: number;
+            readonly similarity: components["schemas"]["Share"];
+            readonly complete: boolean;
+            /** @description Sources were tried only until so many grasps were sure; null means that all were. */
+            readonly enough: number | null;
+            readonly summary: components["schemas"]["TransferSummary"];
+            readonly warnings: readonly string[];
+            /** @description Time taken, by stage; "core" is that of one core, the rest of a clock. */
+            readonly seconds: {
+                readonly [key: string]: number;
+            };
+            readonly provenance: components["schemas"]["Provenance"];
+            readonly created_at: components["schemas"]["Time"];
+        };
+        readonly TransferList: {
+            readonly items: readonly components["schemas"]["TransferOverview"][];
+            readonly next_cursor: components["schemas"]["Cursor"];
         };
         readonly Provenance: {
             readonly engine_version: string;
@@ -1087,6 +1217,8 @@ export interface components {
             readonly stage: string;
             /** @description Time until it ends, where known. */
             readonly eta_s: number | null;
+            /** @description How many grasps a running transfer has found so far. */
+            readonly grasps_found: number | null;
             /** @description What a job that succeeded made. */
             readonly result: null | {
                 readonly transfer?: components["schemas"]["ContentId"];
@@ -1174,7 +1306,7 @@ export interface components {
                 readonly "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description The mesh cannot be used; nothing was stored. */
+        /** @description The mesh cannot be used, or the Idempotency-Key stands for another request; nothing was stored. */
         readonly Unusable: {
             headers: {
                 readonly [name: string]: unknown;
@@ -1275,7 +1407,7 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
-    readonly getLandingPage: {
+    readonly getViewer: {
         readonly parameters: {
             readonly query?: never;
             readonly header?: never;
@@ -1284,7 +1416,7 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            /** @description A page. */
+            /** @description A page that shows what is stored and takes meshes. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;
@@ -1293,6 +1425,33 @@ export interface operations {
                     readonly "text/html": string;
                 };
             };
+        };
+    };
+    readonly getViewerFile: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly file: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description The file; its name changes with its content. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/javascript": string;
+                    readonly "text/css": string;
+                    readonly "image/svg+xml": string;
+                    readonly "text/plain": string;
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 404: components["responses"]["NotFound"];
         };
     };
     readonly getHealth: {
@@ -1336,6 +1495,28 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
+        };
+    };
+    readonly getMetrics: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Requests by route, jobs, what is stored, the decoder, the process. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/plain": string;
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -1438,8 +1619,10 @@ export interface operations {
                 /** @description Only parts that serve the task, the hand kept off the parts that it keeps free. Not together with part. */
                 readonly task?: string;
                 readonly hand?: string;
-                /** @description Most grasps to return, best first; default: all. */
+                /** @description Most grasps to return, best first; default: all. With it, source grasps are tried, the most promising first, only until so many grasps are found that hold transfer.sure_grip of their disturbed copies. */
                 readonly count?: number;
+                /** @description Whether all source grasps are tried though count is given. */
+                readonly exhaustive?: boolean;
                 /** @description Source grasps tried per part. */
                 readonly sources?: number;
                 /** @description Coefficient of friction; source grasps are judged again at it. */
@@ -1553,6 +1736,36 @@ export interface operations {
             readonly 404: components["responses"]["NotFound"];
         };
     };
+    readonly listTransfers: {
+        readonly parameters: {
+            readonly query?: {
+                readonly category?: string;
+                /** @description The novel object's id. */
+                readonly object?: string;
+                /** @description Most items on the page. */
+                readonly limit?: components["parameters"]["Limit"];
+                /** @description next_cursor of the page before. */
+                readonly cursor?: components["parameters"]["Cursor"];
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description A page of transfers. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TransferList"];
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 404: components["responses"]["NotFound"];
+        };
+    };
     readonly getTransfer: {
         readonly parameters: {
             readonly query?: never;
@@ -1657,6 +1870,7 @@ export interface operations {
             readonly 409: components["responses"]["Conflict"];
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
+            readonly 422: components["responses"]["Unusable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -1796,6 +2010,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2094,6 +2309,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2338,6 +2554,35 @@ export interface operations {
             readonly 404: components["responses"]["NotFound"];
         };
     };
+    readonly getHandMesh: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly name: components["parameters"]["NamePath"];
+                /** @description The name of a mesh in the URDF, without folders. */
+                readonly file: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description A mesh file, metres, in the frame that the URDF says. */
+            readonly 200: {
+                headers: {
+                    /** @description A file name. */
+                    readonly "Content-Disposition"?: string;
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "model/obj": string;
+                    readonly "model/stl": string;
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 404: components["responses"]["NotFound"];
+        };
+    };
     readonly listParameters: {
         readonly parameters: {
             readonly query?: never;
@@ -2435,6 +2680,36 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 507: components["responses"]["StorageFailed"];
+        };
+    };
+    readonly streamJob: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: {
+                /** @description The id of the last event that was received. */
+                readonly "Last-Event-ID"?: string;
+            };
+            readonly path: {
+                readonly id: components["parameters"]["UuidPath"];
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description The events. */
+            readonly 200: {
+                headers: {
+                    /** @description They are of this moment. */
+                    readonly "Cache-Control"?: "no-store";
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/event-stream": string;
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly searchByShape: {

@@ -19,6 +19,8 @@ export type Outcome = Schemas['Outcome'];
 export type Problem = Schemas['Problem'];
 export type SettingValues = Schemas['SettingValues'];
 export type Transfer = Schemas['Transfer'];
+/** A transfer in a list. */
+export type TransferItem = Schemas['TransferOverview'];
 export type ContactMap = Transfer['contact_maps'][number];
 export type Attempt = Transfer['attempts'][number];
 export type Cursor = Schemas['Cursor'];
@@ -32,11 +34,9 @@ export type GraspSpaceQuery = QueryOf<'listGraspSpaces'>;
 export type ObjectQuery = QueryOf<'listObjects'>;
 export type UploadQuery = QueryOf<'postObject'>;
 export type TransferQuery = QueryOf<'postGrasps'>;
+export type TransferListQuery = QueryOf<'listTransfers'>;
 
 export interface Page<Item> {
   readonly items: readonly Item[];
   readonly next_cursor: Cursor;
 }
-
-/** A transfer in a list. */
-export type TransferItem = Omit<Transfer, 'attempts' | 'contact_maps' | 'parameters'>;

@@ -1,12 +1,15 @@
 import { useEffect } from 'preact/hooks';
 
 import { BrowseView } from '../views/browse/browse_view';
-import { GraspsView } from '../views/grasps/grasps_view';
 import { InsightView } from '../views/insight/insight_view';
-import { ObjectView } from '../views/object/object_view';
 import { UploadView } from '../views/upload/upload_view';
+import { Footer } from './footer';
+import { lazyView } from './lazy_view';
 import { Link, useRoute } from './navigation';
 import type { Route } from './routes';
+
+const GraspsView = lazyView(async () => (await import('../views/grasps/grasps_view')).GraspsView);
+const ObjectView = lazyView(async () => (await import('../views/object/object_view')).ObjectView);
 
 const SECTIONS: readonly (readonly [title: string, route: Route])[] = [
   ['Browse', { view: 'browse' }],
@@ -63,6 +66,7 @@ export function App() {
       <main id="main" tabIndex={-1}>
         <CurrentView route={route} />
       </main>
+      {route.view === 'browse' && <Footer />}
     </>
   );
 }

@@ -12,6 +12,7 @@ interface BarsProps {
 
 const NAME_ROOM = 150; // px
 const BAR_SHARE = 0.62;
+const THICKEST = 30; // px
 /** Beyond the longest bar stands its count. */
 const COUNT_ROOM = 1.08;
 
@@ -23,7 +24,7 @@ export function Bars({ title, xLabel, rows, series }: BarsProps) {
     <ChartFrame
       title={title}
       summary={rows.map((name, row) => `${name}: ${totals[row] ?? 0}`).join(', ')}
-      x={{ label: xLabel, domain: makeDomainFromZero(totals.map((total) => COUNT_ROOM * total)) }}
+      x={{ label: xLabel, domain: makeDomainFromZero(totals.map((total) => COUNT_ROOM * total)), counts: true }}
       y={{
         label: '',
         domain: [0, Math.max(rows.length, 1)],
@@ -34,8 +35,10 @@ export function Bars({ title, xLabel, rows, series }: BarsProps) {
     >
       {(x, y) =>
         rows.map((name, row) => {
-          const top = y.toPixel(place(row) + BAR_SHARE / 2);
-          const height = y.toPixel(place(row) - BAR_SHARE / 2) - top;
+          const middle = y.toPixel(place(row));
+          const room = y.toPixel(place(row) - BAR_SHARE / 2) - y.toPixel(place(row) + BAR_SHARE / 2);
+          const height = Math.min(room, THICKEST);
+          const top = middle - height / 2;
           return (
             <g key={name}>
               {series.map(({ name: of, colour, counts }, s) => {
@@ -52,7 +55,7 @@ export function Bars({ title, xLabel, rows, series }: BarsProps) {
                   />
                 );
               })}
-              <text class="bar-count" x={x.toPixel(totals[row] ?? 0) + 5} y={top + height / 2} dy="0.32em">
+              <text class="bar-count" x={x.toPixel(totals[row] ?? 0) + 5} y={middle} dy="0.32em">
                 {totals[row]}
               </text>
             </g>

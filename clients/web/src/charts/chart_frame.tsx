@@ -7,6 +7,8 @@ import { makeLinearScale, makeTicks, type Scale } from './scale';
 export interface Axis {
   readonly label: string;
   readonly domain: readonly [number, number];
+  /** Whether it counts things, of which there are no halves. */
+  readonly counts?: boolean;
   /** Default: round numbers. */
   readonly ticks?: readonly (readonly [value: number, text: string])[];
 }
@@ -29,11 +31,14 @@ const HEIGHT = 300;
 const MARGIN = { top: 12, right: 16, bottom: 44, left: 52 };
 const TICK_GAP = 80; // px
 
-function tickPairs({ ticks, domain }: Axis, length: number): readonly (readonly [number, string])[] {
-  return (
-    ticks ??
-    makeTicks(domain, Math.max(2, Math.floor(length / TICK_GAP))).map((value) => [value, String(value)] as const)
-  );
+function tickPairs(
+  { ticks, domain, counts = false }: Axis,
+  length: number,
+): readonly (readonly [number, string])[] {
+  if (ticks) return ticks;
+  return makeTicks(domain, Math.max(2, Math.floor(length / TICK_GAP)))
+    .filter((value) => !counts || Number.isInteger(value))
+    .map((value) => [value, String(value)] as const);
 }
 
 function useWidth() {
@@ -60,12 +65,13 @@ export function ChartFrame({
   const room = Math.max(width - left - MARGIN.right, 0);
   const plotWidth = square ? Math.min(room, plotHeight) : room;
   const bottom = MARGIN.top + plotHeight;
-  const xScale = makeLinearScale(x.domain, [left, left + plotWidth]);
+  const start = left + (room - plotWidth) / 2;
+  const xScale = makeLinearScale(x.domain, [start, start + plotWidth]);
   const yScale = makeLinearScale(y.domain, [bottom, MARGIN.top]);
   return (
     <figure class="chart">
       <figcaption>
-        <h3>{title}</h3>
+        <h2>{title}</h2>
         {legend}
       </figcaption>
       <div class="chart-place" ref={element}>
@@ -73,8 +79,8 @@ export function ChartFrame({
           <svg width={width} height={HEIGHT} role="img" aria-label={`${title}. ${summary}`}>
             {tickPairs(y, plotHeight).map(([value, text]) => (
               <g key={value} class="tick">
-                <line x1={left} x2={left + plotWidth} y1={yScale.toPixel(value)} y2={yScale.toPixel(value)} />
-                <text x={left - 8} y={yScale.toPixel(value)} dy="0.32em" text-anchor="end">{text}</text>
+                <line x1={start} x2={start + plotWidth} y1={yScale.toPixel(value)} y2={yScale.toPixel(value)} />
+                <text x={start - 8} y={yScale.toPixel(value)} dy="0.32em" text-anchor="end">{text}</text>
               </g>
             ))}
             {tickPairs(x, plotWidth).map(([value, text]) => (
@@ -84,11 +90,11 @@ export function ChartFrame({
               </g>
             ))}
             {children(xScale, yScale)}
-            <path class="axis" d={`M${left} ${MARGIN.top}V${bottom}H${left + plotWidth}`} />
-            <text class="axis-label" x={left + plotWidth / 2} y={HEIGHT - 8} text-anchor="middle">{x.label}</text>
+            <path class="axis" d={`M${start} ${MARGIN.top}V${bottom}H${start + plotWidth}`} />
+            <text class="axis-label" x={start + plotWidth / 2} y={HEIGHT - 8} text-anchor="middle">{x.label}</text>
             <text
               class="axis-label"
-              transform={`translate(12 ${MARGIN.top + plotHeight / 2}) rotate(-90)`}
+              transform={`translate(${start - left + 12} ${MARGIN.top + plotHeight / 2}) rotate(-90)`}
               text-anchor="middle"
             >
               {y.label}

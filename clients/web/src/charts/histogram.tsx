@@ -22,7 +22,7 @@ export function Histogram({ title, xLabel, series }: HistogramProps) {
       title={title}
       summary={`${all.length} grasps; ${describeMedian(all)}`}
       x={{ label: xLabel, domain }}
-      y={{ label: 'grasps', domain: makeDomainFromZero(totals) }}
+      y={{ label: 'grasps', domain: makeDomainFromZero(totals), counts: true }}
       legend={<SeriesLegend series={series} />}
     >
       {(x, y) =>

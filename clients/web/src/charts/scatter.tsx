@@ -50,7 +50,7 @@ export function Scatter({ title, xLabel, yLabel, series }: ScatterProps) {
                 cy={y.toPixel(point.y)}
                 r="3"
                 fill={colour}
-                fill-opacity="0.7"
+                fill-opacity="0.85"
               />
             )),
           )}

@@ -6,6 +6,7 @@ import { getHandMesh, getUrdf } from '../api/client';
 import { makeMeshGeometry } from '../geometry/mesh_geometry';
 import { readObj } from '../geometry/read_obj';
 import { remember } from '../api/remember';
+import { type Bones, findBones } from './bones';
 import type { HandState } from './grasp_motion';
 
 /** A link's shape. Links of the same meshes (the fingers') share one. */
@@ -21,6 +22,16 @@ export class HandModel {
     /** Every link that has a shape is in exactly one of them. */
     readonly shapes: readonly LinkShape[],
   ) {}
+
+  /** The bones of each link by name. */
+  findBones(): ReadonlyMap<string, Bones> {
+    return new Map(
+      Object.entries(this.robot.links).map(([name, link]) => {
+        const shape = this.shapes.find(({ links }) => links.includes(name));
+        return [name, findBones(link, shape?.geometry)];
+      }),
+    );
+  }
 
   /** X_OL of each link by name. */
   calcLinkPoses({ X_OH, joints }: HandState): ReadonlyMap<string, Matrix4> {

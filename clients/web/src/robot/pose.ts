@@ -5,7 +5,7 @@ import type { JointPositions, Point, Pose } from '../api/types';
 export const toVector = ([x, y, z]: Point): Vector3 => new Vector3(x, y, z);
 
 /** {x, y, z, w} by name: no array whose order could be mistaken. */
-export function toQuaternion({ orientation: { x, y, z, w } }: Pose): Quaternion {
+function toQuaternion({ orientation: { x, y, z, w } }: Pose): Quaternion {
   return new Quaternion(x, y, z, w);
 }
 

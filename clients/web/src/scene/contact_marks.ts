@@ -1,5 +1,6 @@
 import {
-  type BufferGeometry, ConeGeometry, DoubleSide, Group, InstancedMesh, type Material, Matrix4, MeshBasicMaterial, Quaternion,
+  type BufferGeometry, ConeGeometry, DoubleSide, Group, InstancedMesh, type Material, Matrix4, MeshBasicMaterial,
+  type MeshBasicMaterialParameters, Quaternion,
   SphereGeometry, Vector3,
 } from 'three';
 
@@ -17,34 +18,20 @@ function makeContactPose({ p_O, n_O }: Contact): Matrix4 {
   return new Matrix4().compose(toVector(p_O), rotation, new Vector3(1, 1, 1));
 }
 
-/** Contacts as dots, each with its friction cone: the directions in which the
- * finger can push the object there, into it, as long as the cone is wide. They
- * show through object and hand, which hide most of them otherwise. */
+/** Contacts as dots, each with its friction cone when the friction is known: the
+ * directions in which the finger can push the object there, into it. They show
+ * through object and hand, which hide most of them otherwise. */
 export class ContactMarks extends Group {
-  private readonly meshes: readonly InstancedMesh<BufferGeometry, Material>[];
+  private readonly meshes: InstancedMesh<BufferGeometry, Material>[] = [];
 
-  constructor(contacts: readonly Contact[], friction: number) {
+  constructor(contacts: readonly Contact[], friction: number | null) {
     super();
-    const shared = { color: CONTACT_COLOUR, transparent: true, depthTest: false, depthWrite: false };
-    const cones = new InstancedMesh(
-      new ConeGeometry(friction * CONE_LENGTH, CONE_LENGTH, 24, 1, true).translate(0, -CONE_LENGTH / 2, 0),
-      new MeshBasicMaterial({ ...shared, opacity: 0.28, side: DoubleSide }),
-      contacts.length,
-    );
-    const dots = new InstancedMesh(
-      new SphereGeometry(DOT_RADIUS, 12, 8),
-      new MeshBasicMaterial({ ...shared, opacity: 0.95 }),
-      contacts.length,
-    );
-    contacts.forEach((contact, index) => {
-      const X_OC = makeContactPose(contact);
-      cones.setMatrixAt(index, X_OC);
-      dots.setMatrixAt(index, X_OC);
-    });
-    cones.renderOrder = 2;
-    dots.renderOrder = 3;
-    this.meshes = [cones, dots];
-    this.add(cones, dots);
+    const poses = contacts.map(makeContactPose);
+    this.mark(poses, new SphereGeometry(DOT_RADIUS, 12, 8), { opacity: 0.95 }, 3);
+    if (friction === null) return;
+    const cone = new ConeGeometry(friction * CONE_LENGTH, CONE_LENGTH, 24, 1, true);
+    cone.translate(0, -CONE_LENGTH / 2, 0); // Its tip at the contact.
+    this.mark(poses, cone, { opacity: 0.28, side: DoubleSide }, 2);
   }
 
   override dispose(): void {
@@ -54,5 +41,25 @@ export class ContactMarks extends Group {
       mesh.material.dispose();
       mesh.dispose();
     }
+  }
+
+  private mark(
+    poses: readonly Matrix4[],
+    geometry: BufferGeometry,
+    look: MeshBasicMaterialParameters,
+    renderOrder: number,
+  ): void {
+    const material = new MeshBasicMaterial({
+      color: CONTACT_COLOUR,
+      transparent: true,
+      depthTest: false,
+      depthWrite: false,
+      ...look,
+    });
+    const mesh = new InstancedMesh<BufferGeometry, Material>(geometry, material, poses.length);
+    poses.forEach((X_OC, index) => { mesh.setMatrixAt(index, X_OC); });
+    mesh.renderOrder = renderOrder;
+    this.meshes.push(mesh);
+    this.add(mesh);
   }
 }

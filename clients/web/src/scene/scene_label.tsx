@@ -10,7 +10,7 @@ interface SceneLabelProps {
   readonly children: ComponentChildren;
 }
 
-/** Words that stay at a point of the scene. */
+/** Words that stay below a point of the scene. */
 export function SceneLabel({ stage, point, children }: SceneLabelProps) {
   const label = useRef<HTMLSpanElement>(null);
   useEffect(

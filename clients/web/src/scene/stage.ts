@@ -64,7 +64,7 @@ export class Stage {
   private readonly controls: OrbitControls;
   private readonly observer: ResizeObserver;
   private readonly listeners = new Set<(statistics: FrameStatistics) => void>();
-  private framed: { readonly box: Box3; readonly from: Vector3 } | null = null;
+  private home: { readonly box: Box3; readonly from: Vector3 } | null = null;
   private request = 0;
 
   constructor(private readonly container: HTMLElement, label: string) {
@@ -107,17 +107,15 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Shows all of the box, seen from that direction. */
-  frame(box: Box3, from: Vector3 = FIRST_VIEW): void {
-    this.framed = { box: box.clone(), from };
-    this.reset();
+  /** What reset() goes to: all of the box, seen from that direction. */
+  setHome(box: Box3, from: Vector3 = FIRST_VIEW): void {
+    this.home = { box: box.clone(), from };
   }
 
-  /** Back to the first view of what was framed last. */
   reset(): void {
-    if (!this.framed) return;
-    frameBox(this.camera, this.framed.box, this.framed.from);
-    this.framed.box.getCenter(this.controls.target);
+    if (!this.home) return;
+    frameBox(this.camera, this.home.box, this.home.from);
+    this.home.box.getCenter(this.controls.target);
     this.controls.update();
     this.invalidate();
   }

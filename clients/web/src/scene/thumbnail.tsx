@@ -1,8 +1,6 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 
 import type { StoredObject } from '../api/types';
-import { loadObjectModel } from './object_model';
-import { drawThumbnail } from './thumbnail_renderer';
 
 const WIDTH = 400;
 const HEIGHT = 300;
@@ -19,20 +17,15 @@ export function Thumbnail({ object, label }: ThumbnailProps) {
   useEffect(() => {
     let wanted = true;
     setState('waiting');
-    loadObjectModel(object).then(
-      (model) => {
-        if (wanted && canvas.current) {
-          drawThumbnail(model, canvas.current);
-          setState('drawn');
-        }
-        model.geometry.dispose();
-      },
-      () => {
-        if (wanted) setState('failed');
-      },
-    ).catch(() => {
-      if (wanted) setState('failed'); // Without WebGL the name must do.
-    });
+    const draw = async (): Promise<void> => {
+      // Names and numbers are there before all that draws has come.
+      const { drawThumbnail } = await import('./thumbnail_renderer');
+      if (canvas.current) await drawThumbnail(object, canvas.current, () => wanted);
+    };
+    draw().then(
+      () => { if (wanted) setState('drawn'); },
+      () => { if (wanted) setState('failed'); }, // Without WebGL the name must do.
+    );
     return () => {
       wanted = false;
     };

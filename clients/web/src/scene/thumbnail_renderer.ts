@@ -1,6 +1,7 @@
 import { Box3, Color, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 
-import type { ObjectModel } from './object_model';
+import type { StoredObject } from '../api/types';
+import { loadObjectModel, type ObjectModel } from './object_model';
 import { ObjectMesh } from './object_mesh';
 import { addLights, frameBox } from './stage';
 
@@ -34,8 +35,16 @@ class ThumbnailRenderer {
 
 let shared: ThumbnailRenderer | null = null;
 
-/** Draws an object to a 2-D canvas. */
-export function drawThumbnail(model: ObjectModel, canvas: HTMLCanvasElement): void {
-  shared ??= new ThumbnailRenderer();
-  shared.draw(model, canvas);
+/** Draws a stored object to a 2-D canvas, unless that is not wanted any more. */
+export async function drawThumbnail(
+  object: StoredObject,
+  canvas: HTMLCanvasElement,
+  isWanted: () => boolean,
+): Promise<void> {
+  const model = await loadObjectModel(object);
+  if (isWanted()) {
+    shared ??= new ThumbnailRenderer();
+    shared.draw(model, canvas);
+  }
+  model.geometry.dispose();
 }

@@ -1,5 +1,5 @@
 /** Okabe and Ito's colours, which people of every colour vision tell apart. */
-export const OKABE_ITO = {
+const OKABE_ITO = {
   blue: '#0072b2',
   orange: '#e69f00',
   green: '#009e73',

@@ -1,5 +1,6 @@
 import { useEffect, useState } from 'preact/hooks';
 
+import { getGrasp } from '../../api/client';
 import type { Grasp, GraspStage } from '../../api/types';
 import { useResource } from '../../app/resource';
 import type { GraspExtra } from '../../app/routes';
@@ -10,10 +11,11 @@ import { GraspPicture } from './grasp_picture';
 import { loadLineage } from './lineage';
 import { MotionControl } from './motion_control';
 import { StageSwitch } from './stage_switch';
-import { getGrasp } from '../../api/client';
 
 interface GraspBenchProps {
   readonly grasp: Grasp | null;
+  /** Whether the record that it comes from is stored; not while it is made. */
+  readonly recorded: boolean;
   /** Listed grasps of the same hand on the same object. */
   readonly others: readonly Grasp[];
   readonly show: GraspExtra | null;
@@ -21,8 +23,8 @@ interface GraspBenchProps {
 }
 
 /** One grasp: picture, motion, comparison with where it comes from, numbers. */
-export function GraspBench({ grasp, others, show, onShow }: GraspBenchProps) {
-  const lineage = useResource(grasp?.id ?? null, () => {
+export function GraspBench({ grasp, recorded, others, show, onShow }: GraspBenchProps) {
+  const lineage = useResource(grasp && recorded ? grasp.id : null, () => {
     if (!grasp) throw new Error('There is no grasp to follow.');
     return loadLineage(grasp);
   });
@@ -40,6 +42,8 @@ export function GraspBench({ grasp, others, show, onShow }: GraspBenchProps) {
   const source = show === 'source' ? (lineage.value?.source ?? null) : null;
   const model = useResource(shown?.object ?? null, () => loadObjectModelById(shown?.object ?? ''));
   const sourceModel = useResource(source?.object ?? null, () => loadObjectModelById(source?.object ?? ''));
+  useEffect(() => () => model.value?.geometry.dispose(), [model.value]);
+  useEffect(() => () => sourceModel.value?.geometry.dispose(), [sourceModel.value]);
   const problem = model.problem ?? sourceModel.problem ?? lineage.problem ?? other.problem;
   return (
     <>
@@ -67,7 +71,7 @@ export function GraspBench({ grasp, others, show, onShow }: GraspBenchProps) {
             <button
               type="button"
               aria-pressed={show === 'source'}
-              disabled={lineage.value !== null && lineage.value.source === null}
+              disabled={lineage.value?.source === null || !recorded}
               onClick={() => { onShow(show === 'source' ? null : 'source'); }}
             >
               Source grasp

@@ -89,7 +89,7 @@ export function GraspDetails({ grasp, source }: { readonly grasp: Grasp; readonl
               </Link>
             </>
           )}
-          {grasp.provenance.transfer !== null && (
+          {source && grasp.provenance.transfer !== null && (
             <>
               {' '}· <Link to={{ view: 'insight', transfer: grasp.provenance.transfer }}>its transfer</Link>
             </>

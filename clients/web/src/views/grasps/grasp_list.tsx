@@ -2,6 +2,10 @@ import { useEffect, useRef } from 'preact/hooks';
 
 import type { Grasp } from '../../api/types';
 import { formatNumber, formatShare } from '../../ui/format';
+import { useArrowKeys } from './arrow_keys';
+
+/** As many as are listed, and shown at once. */
+export const MOST_GRASPS = 200;
 
 interface GraspListProps {
   readonly grasps: readonly Grasp[];
@@ -38,6 +42,7 @@ export function GraspList({ grasps, loading, more, chosen, onChoose }: GraspList
       if (end > scrollTop + clientHeight) list.current.scrollTop = end - clientHeight;
     }
   }, [chosen, grasps]);
+  useArrowKeys(grasps.map(({ id }) => id), chosen, onChoose);
   if (loading) return <div class="skeleton list-skeleton" aria-hidden="true" />;
   if (grasps.length === 0) return <p class="empty list-skeleton">No grasp meets these filters.</p>;
   const best = Math.max(...grasps.map(({ quality }) => quality.epsilon), Number.EPSILON);

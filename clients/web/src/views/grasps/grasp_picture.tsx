@@ -1,17 +1,15 @@
 import { useEffect, useMemo, useState } from 'preact/hooks';
-import { Box3, Group, Matrix4, Vector3 } from 'three';
+import { Box3, Vector3 } from 'three';
 
-import type { ContactMap, Grasp } from '../../api/types';
+import type { Grasp } from '../../api/types';
 import { useDark } from '../../app/media';
 import { useResource } from '../../app/resource';
-import { pairContacts } from '../../robot/contact_pairs';
 import { calcHandState } from '../../robot/grasp_motion';
 import { loadHandModel } from '../../robot/hand_model';
-import { toSimilarity, toVector } from '../../robot/pose';
 import { ContactMarks } from '../../scene/contact_marks';
 import { FloorGrid, GRID_CELL } from '../../scene/floor_grid';
-import { HandMesh, HandSwarm } from '../../scene/hand_mesh';
-import { MappingLines } from '../../scene/mapping_lines';
+import { HandMesh } from '../../scene/hand_mesh';
+import { HandSwarm } from '../../scene/hand_swarm';
 import type { ObjectModel } from '../../scene/object_model';
 import { ObjectMesh } from '../../scene/object_mesh';
 import { placeBeside } from '../../scene/place_beside';
@@ -23,18 +21,13 @@ import { CONTACT_COLOUR, gridColour, handColour, lineColour, rampColour } from '
 import { PartLegend } from '../../ui/part_legend';
 import { Swatch } from '../../ui/swatch';
 import { formatNumber } from '../../ui/format';
-
-/** Where a transferred grasp comes from, to be shown beside it. */
-export interface SourceOfGrasp {
-  readonly grasp: Grasp;
-  readonly model: ObjectModel;
-  readonly contactMap: ContactMap;
-}
+import { chooseDirection, chooseDirectionAcross, HAND_ROOM, makeBoxOfMotion } from './framing';
+import { makeMappingLines, SourceGroup, type SourceOfGrasp } from './source_group';
 
 interface GraspPictureProps {
   readonly grasp: Grasp | null;
   readonly model: ObjectModel | null;
-  /** Null: not known yet, no cones are drawn. */
+  /** Null: not known yet; contacts then have no cones. */
   readonly friction: number | null;
   /** 0 at the pre-grasp, 1 at the grasp. */
   readonly progress: number;
@@ -43,23 +36,8 @@ interface GraspPictureProps {
   readonly source: SourceOfGrasp | null;
 }
 
-/** Room for the hand around an object, m. */
-const HAND_ROOM = 0.07;
-
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
-
-/** So that the example, which stands along x, is beside the object, from the side
- * where the hand does not hide it. */
-function chooseDirectionAcross({ pregrasp: { approach } }: Grasp): Vector3 {
-  return new Vector3(0.12, approach[1] > 0.2 ? 1 : -1, 0.55).normalize();
-}
-
-/** From the side, so that hand and object stand beside each other. */
-function chooseDirection(grasp: Grasp): Vector3 {
-  const [x, y] = grasp.pregrasp.approach;
-  const side = Math.hypot(x, y) > 0.2 ? new Vector3(y, -x, 0).normalize() : new Vector3(0.4, -1, 0).normalize();
-  return side.setZ(0.45).normalize();
-}
+const bottomOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.min.z);
 
 /** A grasp on its object. */
 export function GraspPicture({ grasp, model, friction, progress, ghosts, source }: GraspPictureProps) {
@@ -76,14 +54,19 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useEffect(() => {
     if (!stage || !ready) return;
-    const box = boxOf(model).clone().expandByScalar(HAND_ROOM);
     if (X_OE && source) {
-      box.union(boxOf(source.model).clone().applyMatrix4(X_OE).expandByScalar(HAND_ROOM));
-      stage.frame(box, chooseDirectionAcross(grasp));
+      const box = boxOf(source.model).clone().applyMatrix4(X_OE).union(boxOf(model));
+      stage.setHome(box.expandByScalar(HAND_ROOM), chooseDirectionAcross(grasp));
+    } else if (ghosts) {
+      stage.setHome(boxOf(model).clone().expandByScalar(HAND_ROOM), chooseDirection(grasp));
     } else {
-      stage.frame(box, chooseDirection(grasp));
+      stage.setHome(makeBoxOfMotion(boxOf(model), grasp), chooseDirection(grasp));
     }
-  }, [stage, ready, model?.object.id, X_OE]);
+  }, [stage, ready, grasp, model, X_OE, ghosts !== null]);
+  // Stepping through grasps leaves the view as it is; the button brings it round.
+  useEffect(() => {
+    if (ready) stage?.reset();
+  }, [stage, ready, model?.object.id, X_OE, ghosts !== null]);
 
   useOnStage(
     stage,
@@ -105,7 +88,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
 
   useOnStage(
     stage,
-    () => (ready && friction !== null ? new ContactMarks(grasp.contacts, friction) : null),
+    () => (ready ? new ContactMarks(grasp.contacts, friction) : null),
     [ready, grasp, friction],
   );
 
@@ -128,7 +111,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
   useOnStage(
     stage,
     () =>
-      hand.value && X_OE && source && friction !== null
+      hand.value && X_OE && source
         ? new SourceGroup(source, X_OE, new HandMesh(hand.value, handColour(dark)), friction)
         : null,
     [hand.value, X_OE, source?.grasp, friction, dark],
@@ -147,8 +130,8 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
     >
       {stage && X_OE && source && model && (
         <>
-          <SceneLabel stage={stage} point={topOf(boxOf(model))}>{name}</SceneLabel>
-          <SceneLabel stage={stage} point={topOf(boxOf(source.model)).applyMatrix4(X_OE)}>
+          <SceneLabel stage={stage} point={bottomOf(boxOf(model))}>{name}</SceneLabel>
+          <SceneLabel stage={stage} point={bottomOf(boxOf(source.model)).applyMatrix4(X_OE)}>
             example {describeObject(source.model.object)}
           </SceneLabel>
         </>
@@ -156,7 +139,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
       <div class="viewport-legend">
         <PartLegend parts={model?.parts ?? []} />
         <ul class="legend">
-          <li><Swatch colour={CONTACT_COLOUR} /> contact, friction cone{friction !== null && ` μ = ${friction}`}</li>
+          <li><Swatch colour={CONTACT_COLOUR} /> contact{friction !== null && `, friction cone μ = ${friction}`}</li>
           {source && <li><Swatch colour={lineColour(dark)} /> contact → mapped contact</li>}
           {ghosts && (
             <li>
@@ -169,39 +152,4 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
       </div>
     </Viewport>
   );
-}
-
-const topOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.max.z);
-
-/** The example with the source grasp, at X_OE. */
-class SourceGroup extends Group {
-  private readonly pieces: readonly { dispose(): void }[];
-
-  constructor({ grasp, model }: SourceOfGrasp, X_OE: Matrix4, hand: HandMesh, friction: number) {
-    super();
-    const object = new ObjectMesh(model, { opacity: 1, highlighted: null });
-    const contacts = new ContactMarks(grasp.contacts, friction);
-    this.add(object, hand.setState(calcHandState(grasp, 1)), contacts);
-    this.pieces = [object, hand, contacts];
-    this.applyMatrix4(X_OE);
-  }
-
-  override dispose(): void {
-    super.dispose();
-    for (const piece of this.pieces) piece.dispose();
-  }
-}
-
-function makeMappingLines(
-  { grasp: source, contactMap: { X_NE, scale } }: SourceOfGrasp,
-  grasp: Grasp,
-  X_OE: Matrix4,
-  colour: string,
-): MappingLines {
-  const pairs = pairContacts(source.contacts, grasp.contacts, toSimilarity(X_NE, scale));
-  const mapped = pairs.map(({ p_E, p_N }) => ({ from: p_E.clone().applyMatrix4(X_OE), to: p_N }));
-  const reached = grasp.contacts.flatMap(({ p_O, mapped_p_O }) =>
-    mapped_p_O === null ? [] : [{ from: toVector(mapped_p_O), to: toVector(p_O) }],
-  );
-  return new MappingLines([...mapped, ...reached], colour);
 }

@@ -1,34 +1,16 @@
-import { useEffect, useMemo } from 'preact/hooks';
+import { useMemo } from 'preact/hooks';
 
 import { getGrasp, queryGrasps } from '../../api/client';
 import type { Grasp } from '../../api/types';
 import { navigate } from '../../app/navigation';
 import { useResource } from '../../app/resource';
-import type { GraspExtra, GraspFilters, Route } from '../../app/routes';
+import type { GraspExtra, Route } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
 import { FilterBox } from './filter_box';
 import { GraspBench } from './grasp_bench';
-import { GraspList } from './grasp_list';
-
-/** As many as the view of all grasps shows at once. */
-export const MOST_GRASPS = 200;
+import { GraspList, MOST_GRASPS } from './grasp_list';
 
 type GraspsRoute = Extract<Route, { view: 'grasps' }>;
-
-/** The arrows step through the grasps wherever the focus is, but where they
- * already mean something. */
-function isTyping(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches('input, select, textarea, summary');
-}
-
-const STEPS: Readonly<Record<string, number>> = {
-  ArrowDown: 1,
-  ArrowRight: 1,
-  ArrowUp: -1,
-  ArrowLeft: -1,
-  Home: -Infinity,
-  End: Infinity,
-};
 
 /** Stored grasps by filter, best first, and one of them in 3-D. */
 export function GraspsView({ route }: { readonly route: GraspsRoute }) {
@@ -46,32 +28,14 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
   );
   const grasp: Grasp | null = inList ?? single.value;
 
-  const goTo = (next: Partial<Pick<GraspsRoute, 'grasp' | 'show'>> & { filters?: GraspFilters }): void => {
-    navigate({ ...route, ...next }, { replace: next.filters === undefined });
-  };
+  // Stepping through grasps is no step of the browser's back button.
   const select = (id: string): void => {
-    goTo({ grasp: id });
+    navigate({ ...route, grasp: id }, { replace: true });
   };
   const show = (extra: GraspExtra | null): void => {
     const { show: before, ...rest } = route;
     navigate(extra === null ? rest : { ...rest, show: extra }, { replace: true });
   };
-
-  useEffect(() => {
-    const step = (event: KeyboardEvent): void => {
-      const offset = STEPS[event.key];
-      if (offset === undefined || event.shiftKey || event.altKey || event.ctrlKey || event.metaKey) return;
-      if (isTyping(event.target) || grasps.length === 0) return;
-      event.preventDefault();
-      const index = grasps.findIndex(({ id }) => id === chosen);
-      const next = grasps[Math.min(Math.max(index + offset, 0), grasps.length - 1)];
-      if (next) select(next.id);
-    };
-    window.addEventListener('keydown', step);
-    return () => {
-      window.removeEventListener('keydown', step);
-    };
-  });
 
   const onSameObject = useMemo(
     () => grasps.filter(({ object, hand }) => object === grasp?.object && hand === grasp.hand),
@@ -99,6 +63,7 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
       </div>
       <GraspBench
         grasp={grasp}
+        recorded
         others={onSameObject}
         show={route.show ?? null}
         onShow={show}

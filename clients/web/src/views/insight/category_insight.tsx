@@ -83,21 +83,20 @@ function TransferTable({ transfers }: { readonly transfers: readonly TransferIte
   return (
     <section>
       <h2>Newest transfers</h2>
-      <div class="scroll">
+      <div class="scroll transfers">
         <table>
           <thead>
             <tr>
-              <th>Time</th><th>Parts</th><th class="number">Tried</th>
+              <th>Time</th><th class="number">Tried</th>
               <th class="number">On the part</th><th class="number">On the whole</th>
             </tr>
           </thead>
           <tbody>
-            {transfers.map(({ id, created_at, parts, summary }) => (
+            {transfers.map(({ id, created_at, summary }) => (
               <tr key={id}>
                 <td>
                   <Link to={{ view: 'insight', transfer: id }}>{new Date(created_at).toLocaleString()}</Link>
                 </td>
-                <td>{parts.join(', ')}</td>
                 <td class="number">{summary.attempted}</td>
                 <td class="number">{summary.transferred}</td>
                 <td class="number">{summary.assembled ?? '–'}</td>
@@ -117,14 +116,12 @@ export function CategoryInsight({ name }: { readonly name: string }) {
   if (!loaded.value) return <div class="skeleton charts-skeleton" aria-hidden="true" />;
   const { labels, grasps, spaces, transfers, attempts } = loaded.value;
   return (
-    <>
-      <div class="charts">
-        <QualityCharts grasps={grasps} labels={labels} />
-        <OutcomeChart attempts={attempts} labels={labels} />
-        {spaces.length > 0 && <LearningCurves spaces={spaces} labels={labels} />}
-        {spaces.length > 0 && <Coverage spaces={spaces} />}
-      </div>
+    <div class="charts">
+      <QualityCharts grasps={grasps} labels={labels} />
+      <OutcomeChart attempts={attempts} labels={labels} />
+      {spaces.length > 0 && <LearningCurves spaces={spaces} labels={labels} />}
+      {spaces.length > 0 && <Coverage spaces={spaces} />}
       {transfers.length > 0 && <TransferTable transfers={transfers} />}
-    </>
+    </div>
   );
 }

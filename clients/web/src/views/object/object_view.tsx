@@ -39,7 +39,9 @@ export function ObjectView({ id }: { readonly id: string }) {
 
   const geometry = model.value?.geometry;
   useEffect(() => {
-    if (geometry?.boundingBox) stage?.frame(geometry.boundingBox);
+    if (!stage || !geometry?.boundingBox) return;
+    stage.setHome(geometry.boundingBox);
+    stage.reset();
   }, [stage, id, geometry !== undefined]);
   useEffect(() => () => geometry?.dispose(), [geometry]);
   const mesh = useOnStage(

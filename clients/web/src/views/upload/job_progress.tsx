@@ -2,15 +2,14 @@ import { useEffect, useReducer, useState } from 'preact/hooks';
 
 import { cancelJob, queryGrasps } from '../../api/client';
 import { followJob, isFinished } from '../../api/job_events';
-import { ProblemError } from '../../api/problem';
+import { ProblemError, toProblem } from '../../api/problem';
 import type { Grasp, Job } from '../../api/types';
 import { Link } from '../../app/navigation';
 import { useResource } from '../../app/resource';
 import type { GraspExtra } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
 import { GraspBench } from '../grasps/grasp_bench';
-import { GraspList } from '../grasps/grasp_list';
-import { MOST_GRASPS } from '../grasps/grasps_view';
+import { GraspList, MOST_GRASPS } from '../grasps/grasp_list';
 import { addGrasp } from './found_grasps';
 import { StageLog, useStageLog } from './stage_log';
 
@@ -45,7 +44,7 @@ export function JobProgress({ id }: { readonly id: string }) {
         {problem && <ProblemNote problem={problem} />}
         <p class="actions">
           {job && !isFinished(job) && (
-            <button type="button" onClick={() => { cancelJob(id).then(setJob, () => undefined); }}>
+            <button type="button" onClick={() => { cancelJob(id).then(setJob, (error: unknown) => { setLost(toProblem(error)); }); }}>
               Cancel
             </button>
           )}
@@ -63,7 +62,13 @@ export function JobProgress({ id }: { readonly id: string }) {
             chosen={grasp?.id ?? null} onChoose={setChosen} />
         )}
       </div>
-      <GraspBench grasp={grasp} others={grasps} show={show} onShow={setShow} />
+      <GraspBench
+        grasp={grasp}
+        recorded={transfer !== null}
+        others={grasps}
+        show={show}
+        onShow={setShow}
+      />
     </div>
   );
 }

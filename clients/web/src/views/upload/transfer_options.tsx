@@ -2,10 +2,12 @@
 export interface TransferSettings {
   readonly sources: number;
   readonly friction: number;
+  /** Ends with so many sure grasps; without it all source grasps are tried. */
+  readonly count?: number;
 }
 
-/** The server's. */
-export const DEFAULT_SETTINGS: TransferSettings = { sources: 40, friction: 0.5 };
+/** The server's, but for an end as soon as there is something to look at. */
+export const DEFAULT_SETTINGS: TransferSettings = { sources: 40, friction: 0.5, count: 10 };
 
 interface TransferOptionsProps {
   readonly settings: TransferSettings;
@@ -15,6 +17,21 @@ interface TransferOptionsProps {
 export function TransferOptions({ settings, onChange }: TransferOptionsProps) {
   return (
     <>
+      <label class="field">
+        <span>Grasps wanted</span>
+        <input
+          type="number"
+          min="1"
+          max="1000"
+          placeholder="all"
+          value={settings.count}
+          onChange={(event) => {
+            const count = event.currentTarget.valueAsNumber;
+            const { sources, friction } = settings;
+            onChange(Number.isNaN(count) ? { sources, friction } : { ...settings, count });
+          }}
+        />
+      </label>
       <label class="field">
         <span>Source grasps per part</span>
         <input

@@ -1,7 +1,9 @@
+import { lazyView } from '../../app/lazy_view';
 import type { Route } from '../../app/routes';
-import { JobProgress } from './job_progress';
 import { TransferForm } from './transfer_form';
 import { UploadForm } from './upload_form';
+
+const JobProgress = lazyView(async () => (await import('./job_progress')).JobProgress);
 
 type UploadRoute = Extract<Route, { view: 'upload' }>;
 

@@ -1,0 +1,1 @@
+export { default } from '../../clients/web/eslint.config.js';
