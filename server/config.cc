@@ -12,7 +12,7 @@
 namespace graspdb {
 namespace {
 
-constexpr std::array<std::string_view, 12> kSettings{"db",
+constexpr std::array<std::string_view, 13> kSettings{"db",
                                                      "host",
                                                      "port",
                                                      "server",
@@ -22,6 +22,7 @@ constexpr std::array<std::string_view, 12> kSettings{"db",
                                                      "http_threads",
                                                      "max_upload_bytes",
                                                      "max_queued_jobs",
+                                                     "max_backups",
                                                      "decoder",
                                                      "allow_unsandboxed"};
 

@@ -3,7 +3,10 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <fstream>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
@@ -13,6 +16,14 @@
 
 namespace graspdb {
 namespace {
+
+using Digest = std::array<unsigned char, 32>;
+
+std::string ToHex(const Digest& digest) {
+  std::string text;
+  for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
+  return text;
+}
 
 using Milliseconds = std::chrono::milliseconds;
 
@@ -34,14 +45,34 @@ uint64_t NextTimestamp() {
 }  // namespace
 
 std::string CalcSha256(std::string_view bytes) {
-  std::array<unsigned char, 32> digest{};
+  Digest digest{};
   unsigned int length = 0;
   const int ok = EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length,
                             EVP_sha256(), nullptr);
   GRASPDB_EXPECTS(ok == 1 && length == digest.size());
-  std::string text;
-  for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-  return text;
+  return ToHex(digest);
+}
+
+Result<std::string> CalcFileSha256(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(
+      EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  GRASPDB_EXPECTS(context != nullptr &&
+                  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1);
+  std::vector<char> chunk(1 << 20);
+  while (file) {
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    GRASPDB_EXPECTS(EVP_DigestUpdate(context.get(), chunk.data(),
+                                     static_cast<size_t>(file.gcount())) == 1);
+  }
+  if (!file.eof()) {
+    return Error{ErrorCode::kInvalidArgument, path + " cannot be read.",
+                 "check its name and permissions"};
+  }
+  Digest digest{};
+  GRASPDB_EXPECTS(EVP_DigestFinal_ex(context.get(), digest.data(), nullptr) ==
+                  1);
+  return ToHex(digest);
 }
 
 std::string MakeContentId(std::string_view content) {

@@ -4,10 +4,16 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/result.h"
+
 namespace graspdb {
 
 /** SHA-256 as 64 hex digits. */
 std::string CalcSha256(std::string_view bytes);
+
+/** Of a file's content.
+ @retval kInvalidArgument when it cannot be read. */
+Result<std::string> CalcFileSha256(const std::string& path);
 
 /** The id of something that follows from its content: the first 32 hex digits
  of SHA-256. Join what goes in with a separator that no piece contains. */

@@ -328,6 +328,14 @@ struct StoredReply {
   std::string body;
 };
 
+/** A copy of the whole database. */
+struct StoredBackup {
+  std::string name;  ///< Of its file.
+  int64_t bytes{0};
+  std::string sha256;
+  std::string created_at;
+};
+
 /** How many rows there are of each kind. */
 struct StoreCounts {
   int64_t categories{0};

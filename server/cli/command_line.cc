@@ -31,7 +31,7 @@ int ParseAndRun(int argc, const char* const* argv) {
   Subcommands commands{app, program.options(), {}};
   for (const auto add :
        {&AddServe, &AddPopulate, &AddGrasp, &AddQuery, &AddSegment, &AddLearn,
-        &AddVerify, &AddBench, &AddRender, &AddCheck}) {
+        &AddVerify, &AddBench, &AddRender, &AddBackup, &AddCheck}) {
     add(commands);
   }
   try {

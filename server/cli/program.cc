@@ -19,6 +19,7 @@ Result<std::unique_ptr<Service>> Program::MakeService(
   ServiceOptions service;
   service.threads = options_.threads;
   service.max_queued_jobs = options_.max_queued_jobs;
+  service.max_backups = options_.max_backups;
   return std::make_unique<Service>(std::move(store),
                                    std::make_unique<Decoder>(decoder), service);
 }

@@ -25,6 +25,7 @@ struct Options {
   bool allow_unsandboxed{false};
   int threads{0};
   int64_t max_queued_jobs{ServiceOptions().max_queued_jobs};
+  int max_backups{ServiceOptions().max_backups};
   bool json{false};
 };
 

@@ -31,6 +31,10 @@ void AddServe(Subcommands& commands) {
              "jobs that may wait, slow ones and others each")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
+  AddSetting(command, "--max-backups", commands.options.max_backups,
+             "backups that are kept in DATABASE.backups")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
   AddSetting(command, "--wait", *wait, "seconds that POST /v1/grasps waits")
       ->check(CLI::Range(0, 600))
       ->capture_default_str();

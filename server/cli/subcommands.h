@@ -42,6 +42,7 @@ void AddLearn(Subcommands& commands);
 void AddVerify(Subcommands& commands);
 void AddBench(Subcommands& commands);
 void AddRender(Subcommands& commands);
+void AddBackup(Subcommands& commands);
 void AddCheck(Subcommands& commands);
 
 /** Makes GRASPDB_NAME set an option --name, too. */

@@ -268,6 +268,15 @@ std::string ToJson(const StoredJob& job) {
   return DumpJson(json);
 }
 
+std::string ToJson(const StoredBackup& backup) {
+  Json json;
+  json["name"] = backup.name;
+  json["bytes"] = backup.bytes;
+  json["sha256"] = backup.sha256;
+  json["created_at"] = backup.created_at;
+  return DumpJson(json);
+}
+
 std::string ToJson(const StoreCounts& counts) {
   Json json;
   json["categories"] = counts.categories;

@@ -33,6 +33,7 @@ std::string ToJson(const StoredGraspSpace& space);
 /** @pre The hand is the grasp's. */
 std::string ToJson(const StoredGrasp& grasp, const HandModel& hand);
 std::string ToJson(const StoredJob& job);
+std::string ToJson(const StoredBackup& backup);
 std::string ToJson(const StoreCounts& counts);
 std::string ToJson(const CheckReport& report);
 

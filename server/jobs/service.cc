@@ -85,6 +85,7 @@ Service::Service(std::unique_ptr<Store> store, std::unique_ptr<Decoder> decoder,
                  const ServiceOptions& options)
     : store_(std::move(store)),
       decoder_(std::move(decoder)),
+      backups_(store_->path() + ".backups", options.max_backups),
       options_(options),
       runner_(std::make_unique<JobRunner>(*this)) {
   GRASPDB_EXPECTS(store_ != nullptr && decoder_ != nullptr);

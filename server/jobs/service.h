@@ -17,6 +17,7 @@
 #include "engine/registration/shape_descriptor.h"
 #include "engine/simulation/grasp_simulator.h"
 #include "server/files.h"
+#include "server/jobs/backup_folder.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -47,6 +48,7 @@ struct ServiceOptions {
   int64_t max_mesh_bytes{kMostFileBytes};
   int64_t max_triangles{400'000};
   int64_t max_queued_jobs{100};  ///< Beyond it new ones are refused.
+  int max_backups{10};           ///< Older ones are removed.
 };
 
 /** What an import led to. */
@@ -101,6 +103,8 @@ class Service {
   /** Whether meshes can be decoded, and how the helper is confined. */
   Result<std::string> CheckDecoder() const;
   DecodeCounts CountDecoded() const;
+  /** In the folder DATABASE.backups. */
+  BackupFolder& backups() { return backups_; }
 
   // ---- Immediate verbs ------------------------------------------------------
   /** Checks names and labels, then stores.
@@ -211,6 +215,7 @@ class Service {
 
   std::unique_ptr<Store> store_;
   std::unique_ptr<Decoder> decoder_;
+  BackupFolder backups_;
   ServiceOptions options_;
   mutable std::mutex hands_mutex_;
   mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;

@@ -22,6 +22,7 @@ struct RouteOptions {
   std::shared_ptr<RequestMetrics> metrics;
 };
 
+void AddBackupRoutes(Router& router, Service& service);
 void AddCategoryRoutes(Router& router, Service& service);
 void AddGraspRoutes(Router& router, Service& service,
                     const RouteOptions& options);

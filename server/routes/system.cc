@@ -12,12 +12,6 @@
 namespace graspdb {
 namespace {
 
-HttpHandler Announce(const char* what) {
-  return [what](const HttpRequest&) -> Result<HttpResponse> {
-    return MakeNotBuilt(what);
-  };
-}
-
 /** Ready when the database answers and requests are taken. */
 Result<HttpResponse> GetReady(const Service& service,
                               const HttpRequest& request) {
@@ -57,8 +51,6 @@ void AddSystemRoutes(Router& router, Service& service) {
               }});
   router.Add({"GET", "/openapi.json", BodyKind::kNone, GetOpenApi});
   router.Add({"GET", "/v1/parameters", BodyKind::kNone, GetParameters});
-  router.Add({"GET", "/v1/backups", BodyKind::kNone, Announce("A backup")});
-  router.Add({"POST", "/v1/backups", BodyKind::kJson, Announce("A backup")});
 }
 
 Router MakeRouter(Service& service, const RouteOptions& options) {
@@ -72,6 +64,7 @@ Router MakeRouter(Service& service, const RouteOptions& options) {
   AddTransferRoutes(router, service);
   AddHandRoutes(router, service);
   AddJobRoutes(router, service, options);
+  AddBackupRoutes(router, service);
   AddMetricsRoutes(router, service, options);
   AddViewerRoutes(router);
   return router;

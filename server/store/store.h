@@ -223,6 +223,10 @@ class Store {
 
   // ---- Health ---------------------------------------------------------------
   Result<StoreCounts> Count() const;
+  /** Writes a consistent copy of the whole database as it is now; readers and
+   writers go on meanwhile. It is whole and on the disk, or not there.
+   @retval kConflict when there is such a file. */
+  Result<void> WriteBackup(const std::string& path) const;
   /** The size of the database without its log, bytes. */
   Result<int64_t> CalcSize() const;
   /** Reads every page, key and blob. */

@@ -1,11 +1,12 @@
 """Every operation of schema/openapi.yaml, called on a real server."""
 
 import gzip
+import hashlib
 import json
 import math
+import pathlib
 import re
 import socket
-import sqlite3
 import subprocess
 import threading
 import time
@@ -599,6 +600,14 @@ def test_a_job_can_be_polled(contract, world):
     contract.call("listJobs", 400, query={"state": "lost"})
 
 
+def back_up(binary, server, folder):
+    """A copy of the server's database."""
+    copy = folder / "copy.db"
+    subprocess.run([binary, "backup", str(copy), "--db", str(server.database)],
+                   check=True, stdout=subprocess.DEVNULL)
+    return copy
+
+
 def read_events(stream):
     """The (id, event, data) of a text/event-stream, comments left out."""
     events = []
@@ -666,10 +675,7 @@ def test_who_returns_with_the_last_event_id_gets_what_is_new(contract, world):
 
 def test_event_streams_never_take_all_threads(binary, contract, world, server,
                                               tmp_path):
-    database = tmp_path / "copy.db"
-    with sqlite3.connect(server.database) as source:
-        with sqlite3.connect(database) as target:
-            source.backup(target)
+    database = back_up(binary, server, tmp_path)
     live = LiveServer(binary, database, tmp_path, "--http-threads", "4")
     job = requests.post(
         f"{live.url}/v1/objects/{world['example']['id']}/grasp-spaces",
@@ -691,10 +697,7 @@ def test_event_streams_never_take_all_threads(binary, contract, world, server,
 
 
 def test_a_full_queue_is_a_503(binary, contract, world, server, tmp_path):
-    database = tmp_path / "copy.db"
-    with sqlite3.connect(server.database) as source:
-        with sqlite3.connect(database) as target:
-            source.backup(target)
+    database = back_up(binary, server, tmp_path)
     live = LiveServer(binary, database, tmp_path, "--max-queued-jobs", "2")
     url = f"{live.url}/v1/objects/{world['example']['id']}/grasp-spaces"
     answers = [requests.post(url, json={"parts": ["handle"], "seed": seed},
@@ -939,8 +942,45 @@ def test_a_strange_name_in_the_path_is_a_404(contract, name):
 
 
 def test_what_is_not_built_says_so(contract):
-    for operation in ("listBackups", "postBackup"):
-        assert contract.call(operation, 501)["code"] == "not_implemented"
+    assert contract.call("postHand", 501)["code"] == "not_implemented"
+
+
+def test_a_backup_is_a_database_that_can_be_served(
+        binary, contract, server, world, tmp_path):
+    assert contract.call("listBackups", 200)["items"] == []
+    made = contract.call("postBackup", 201,
+                         headers={"Idempotency-Key": "backup-1"})
+    again = contract.call("postBackup", 201,
+                          headers={"Idempotency-Key": "backup-1"})
+    assert contract.call("listBackups", 200)["items"] == [made] == [again]
+    file = pathlib.Path(f"{server.database}.backups") / made["name"]
+    content = file.read_bytes()
+    assert len(content) == made["bytes"]
+    assert hashlib.sha256(content).hexdigest() == made["sha256"]
+    copy = tmp_path / "restored.db"
+    copy.write_bytes(content)
+    restored = LiveServer(binary, copy, tmp_path)
+    path = f"/v1/objects/{world['example']['id']}"
+    assert (requests.get(restored.url + path, timeout=20).json() ==
+            requests.get(contract.base_url + path, timeout=20).json())
+    assert restored.stop() == 0, restored.log()
+    subprocess.run([binary, "check", "--db", str(copy)], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def test_the_command_line_backs_up_a_database_in_use(binary, server, contract,
+                                                     tmp_path):
+    copy = tmp_path / "copy.db"
+    command = [binary, "backup", str(copy), "--db", str(server.database),
+               "--json"]
+    told = json.loads(subprocess.run(command, check=True,
+                                     capture_output=True).stdout)
+    content = copy.read_bytes()
+    assert hashlib.sha256(content).hexdigest() == told["sha256"]
+    assert len(content) == told["bytes"]
+    second = subprocess.run(command, capture_output=True)
+    assert second.returncode == 2 and b"exists already" in second.stderr
+    assert copy.read_bytes() == content
 
 
 @pytest.mark.parametrize("bytes_sent,status", [
@@ -976,11 +1016,7 @@ def test_broken_messages_get_one_answer(server, bytes_sent, status):
 def test_sigterm_lets_a_waiting_request_end(binary, server, contract, world,
                                             tmp_path):
     """On a second server with a copy of the database."""
-    import shutil
-    import requests
-    database = tmp_path / "copy.db"
-    for path in server.log_path.parent.glob("contract.db*"):
-        shutil.copy(path, str(database) + path.name.removeprefix("contract.db"))
+    database = back_up(binary, server, tmp_path)
     second = LiveServer(binary, database, tmp_path)
     replies = []
     client = threading.Thread(target=lambda: replies.append(requests.post(

@@ -1,0 +1,105 @@
+#include "server/jobs/backup_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "server/files.h"
+#include "server/ids.h"
+
+namespace graspdb {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kPrefix[] = "graspdb-";
+constexpr char kChecksum[] = ".sha256";
+
+Error MakeFolderError(const std::string& path, const std::error_code& error) {
+  return {ErrorCode::kStorage,
+          "The folder " + path + " cannot be used: " + error.message() + ".",
+          "check its permissions"};
+}
+
+// 2024-05-01T12:00:00.000Z as graspdb-20240501T120000.000Z.db, and back.
+std::string MakeName(std::string time) {
+  std::erase_if(time, [](char c) { return c == '-' || c == ':'; });
+  return kPrefix + time + ".db";
+}
+
+std::string ReadTime(const std::string& name) {
+  constexpr size_t kBegin = sizeof(kPrefix) - 1;
+  const std::string t = name.substr(kBegin, 20);
+  return t.substr(0, 4) + "-" + t.substr(4, 2) + "-" + t.substr(6, 5) + ":" +
+         t.substr(11, 2) + ":" + t.substr(13);
+}
+
+bool IsName(const std::string& name) {
+  constexpr char kSample[] = "graspdb-20240501T120000.000Z.db";
+  if (name.size() != sizeof(kSample) - 1) return false;
+  return std::equal(name.begin(), name.end(), kSample, [](char c, char sample) {
+    const bool digit = sample >= '0' && sample <= '9';
+    return digit ? c >= '0' && c <= '9' : c == sample;
+  });
+}
+
+}  // namespace
+
+BackupFolder::BackupFolder(std::string path, int most)
+    : path_(std::move(path)), most_(most) {
+  GRASPDB_EXPECTS(most_ >= 1);
+}
+
+Result<StoredBackup> BackupFolder::Add(const Store& store) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) {
+    return Error{ErrorCode::kOverloaded, "A backup is being made already.",
+                 "ask again when it is done"};
+  }
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error) return MakeFolderError(path_, error);
+  StoredBackup backup;
+  backup.created_at = FormatNow();
+  backup.name = MakeName(backup.created_at);
+  const std::string file = fs::path(path_) / backup.name;
+  GRASPDB_TRY_VOID(store.WriteBackup(file));
+  GRASPDB_TRY(sha256, CalcFileSha256(file));
+  GRASPDB_TRY_VOID(
+      WriteFileBytes(file + kChecksum, sha256 + "  " + backup.name + "\n"));
+  GRASPDB_TRY(all, List());
+  for (size_t i = static_cast<size_t>(most_); i < all.size(); ++i) {
+    const std::string old = fs::path(path_) / all[i].name;
+    fs::remove(old + kChecksum, error);
+    fs::remove(old, error);
+  }
+  return all.front();
+}
+
+Result<std::vector<StoredBackup>> BackupFolder::List() const {
+  std::vector<StoredBackup> backups;
+  std::error_code error;
+  if (!fs::exists(path_, error)) return backups;
+  for (fs::directory_iterator entry(path_, error), end; !error && entry != end;
+       entry.increment(error)) {
+    StoredBackup backup;
+    backup.name = entry->path().filename();
+    if (!IsName(backup.name)) continue;
+    // One without its checksum is not done, or somebody else's.
+    std::ifstream checksum(entry->path().string() + kChecksum);
+    if (!(checksum >> backup.sha256)) continue;
+    std::error_code gone;
+    backup.bytes = static_cast<int64_t>(entry->file_size(gone));
+    if (gone) continue;
+    backup.created_at = ReadTime(backup.name);
+    backups.push_back(std::move(backup));
+  }
+  if (error) return MakeFolderError(path_, error);
+  std::sort(backups.begin(), backups.end(),
+            [](const StoredBackup& a, const StoredBackup& b) {
+              return a.name > b.name;
+            });
+  return backups;
+}
+
+}  // namespace graspdb

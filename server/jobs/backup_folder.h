@@ -1,0 +1,34 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/records.h"
+#include "server/store/store.h"
+
+namespace graspdb {
+
+/** Backups of a database in a folder beside it, the newest so many; each with a
+ file of its checksum, as sha256sum(1) reads it. To restore one, serve it.
+ Thread-safe. */
+class BackupFolder {
+ public:
+  /** @param path  Made with the first backup. @param most  1 or more. */
+  BackupFolder(std::string path, int most);
+
+  /** Makes one and removes the oldest beyond `most`.
+   @retval kOverloaded while one is being made.
+   @retval kStorage when there is no room. */
+  Result<StoredBackup> Add(const Store& store);
+  /** Newest first. */
+  Result<std::vector<StoredBackup>> List() const;
+
+ private:
+  const std::string path_;
+  const int most_;
+  std::mutex mutex_;
+};
+
+}  // namespace graspdb
