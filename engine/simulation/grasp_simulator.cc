@@ -25,6 +25,10 @@ constexpr double kDampingSeconds = 0.002;  // Damping over stiffness.
 constexpr double kStalled = 0.1;
 constexpr double kSlideShare = 0.1;   // Of a motor's speed, m per rad.
 constexpr double kLeastLever = 0.01;  // Of a link without a shape, m.
+// Of one moment; some tens are usual. MuJoCo keeps the square of the latter and
+// copies it with each state.
+constexpr int kMostContacts = 400;
+constexpr int kMostConstraints = 4 * kMostContacts;
 // What holds a joint that does not close, in tip forces.
 constexpr double kHoldingFactor = 5.0;
 
@@ -84,7 +88,7 @@ class SceneWriter {
     WriteHand();
     return fmt::format(
         "<mujoco><compiler angle=\"radian\"/>"
-        "<size njmax=\"6000\" nconmax=\"1000\" nstack=\"8000000\"/>"
+        "<size njmax=\"{}\" nconmax=\"{}\" nstack=\"1000000\"/>"
         "<option timestep=\"{}\" gravity=\"0 0 0\" cone=\"elliptic\""
         " impratio=\"10\" solver=\"Newton\" iterations=\"60\""
         " noslip_iterations=\"8\"><flag multiccd=\"enable\"/></option>"
@@ -94,8 +98,8 @@ class SceneWriter {
         "<actuator>{}</actuator><equality><weld body1=\"object\""
         " solref=\"0.004 1\" solimp=\"0.99 0.999 0.0001\"/></equality>"
         "</mujoco>",
-        test_.time_step, test_.friction, test_.torsion, assets_, hand_bodies_,
-        object_body_, actuators_);
+        kMostConstraints, kMostContacts, test_.time_step, test_.friction,
+        test_.torsion, assets_, hand_bodies_, object_body_, actuators_);
   }
 
  private:
@@ -332,6 +336,16 @@ struct GraspSimulator::Impl {
     return BlownUp() || !(shift < test.max_shift && angle < test.max_turn);
   }
 
+  void Step() {
+    mj_step(model.get(), data.get());
+    // MuJoCo would leave out what it has no room for.
+    for (const int full : {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL}) {
+      if (data->warning[full].number > 0) {
+        throw std::runtime_error("MuJoCo: too many contacts at once");
+      }
+    }
+  }
+
   // MuJoCo starts anew from a state that has blown up: that is lost, too.
   bool BlownUp() const {
     for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
@@ -352,7 +366,7 @@ struct GraspSimulator::Impl {
         rest += test.time_step;
         model->eq_active[0] = 0;  // From here on nothing else holds it.
       }
-      mj_step(model.get(), data.get());
+      Step();
       if (Lost(centre, turn, verdict.settle_shift, verdict.settle_turn)) {
         return false;
       }
@@ -401,7 +415,7 @@ struct GraspSimulator::Impl {
       const Eigen::Vector3d force =
           std::min(1.0, t / test.ramp_seconds) * test.force * direction;
       std::copy_n(force.data(), 3, &data->xfrc_applied[6 * object]);
-      mj_step(model.get(), data.get());
+      Step();
       if (!goes_on()) return;
     }
   }
