@@ -1,10 +1,17 @@
 #include "server/files.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,6 +65,36 @@ Result<void> WriteFileBytes(const std::string& path, const std::string& bytes) {
   if (file) return {};
   return Error{ErrorCode::kInvalidArgument, path + " cannot be written.",
                "check its folder"};
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : file_(std::exchange(other.file_, -1)) {}
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+  std::swap(file_, other.file_);
+  return *this;
+}
+
+Result<FileLock> FileLock::Acquire(const std::string& path) {
+  FileLock lock;
+  lock.file_ = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
+  if (lock.file_ < 0) {
+    return Error{
+        ErrorCode::kStorage,
+        fmt::format("{} cannot be made: {}.", path, std::strerror(errno)),
+        "check the folder's permissions"};
+  }
+  if (flock(lock.file_, LOCK_EX | LOCK_NB) != 0) {
+    return Error{ErrorCode::kConflict,
+                 fmt::format("Another process holds {}.", path),
+                 "stop it first"};
+  }
+  return lock;
+}
+
+void FileLock::Release() {
+  // The file stays: who removes it may remove another's lock.
+  if (file_ >= 0) close(std::exchange(file_, -1));
 }
 
 }  // namespace graspdb

@@ -19,4 +19,23 @@ Result<std::string> ReadFileBytes(const std::string& path);
  @retval kInvalidArgument when it cannot be written. */
 Result<void> WriteFileBytes(const std::string& path, const std::string& bytes);
 
+/** A lock that one process at a time holds, until it gives it back or ends,
+ however that is. */
+class FileLock {
+ public:
+  FileLock() = default;  ///< Holds nothing.
+  ~FileLock() { Release(); }
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+
+  /** @param path  Of a file for the lock alone, made when missing.
+   @retval kConflict while another holds it.
+   @retval kStorage when the file cannot be made. */
+  static Result<FileLock> Acquire(const std::string& path);
+  void Release();
+
+ private:
+  int file_{-1};
+};
+
 }  // namespace graspdb

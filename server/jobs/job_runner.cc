@@ -23,6 +23,16 @@ JobRunner::~JobRunner() { Stop(); }
 
 Result<void> JobRunner::Start() {
   GRASPDB_EXPECTS(workers_.empty());
+  const std::string& database = service_.store().path();
+  auto lock = FileLock::Acquire(database + ".lock");
+  if (!lock && lock.error().code == ErrorCode::kConflict) {
+    return Error{ErrorCode::kConflict,
+                 "Another server works on " + database + ".",
+                 "stop it first, or serve another database"};
+  }
+  if (!lock) return lock.error();
+  lock_ = *std::move(lock);
+  // Nobody works on what is running now: who did has died.
   const auto requeued =
       service_.store().RequeueRunningJobs(/* crashed = */ true);
   if (!requeued) return requeued.error();
@@ -49,6 +59,7 @@ void JobRunner::Stop() {
       !requeued) {
     std::fprintf(stderr, "graspdb: %s\n", requeued.error().message.c_str());
   }
+  lock_.Release();
 }
 
 void JobRunner::Wake() { Notify(); }

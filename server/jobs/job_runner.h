@@ -12,12 +12,13 @@
 
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
+#include "server/files.h"
+#include "server/jobs/live_grasp.h"
 #include "server/records.h"
 
 namespace graspdb {
 
 class Service;
-struct LiveGrasp;
 
 /** Takes jobs from the store and carries them out by the service's verbs, one
  after the other in each of its two threads: slow ones, and those someone waits
@@ -30,6 +31,7 @@ class JobRunner {
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
 
+  /** @retval kConflict while another process works on the database's jobs. */
   Result<void> Start();
   void Stop();
   /** There is a new job. */
@@ -79,6 +81,7 @@ class JobRunner {
   bool stopping_{false};
   std::map<std::string, LiveJob> live_;
   std::vector<std::thread> workers_;
+  FileLock lock_;  // While there are workers.
 };
 
 template <class F>

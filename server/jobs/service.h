@@ -18,6 +18,7 @@
 #include "engine/simulation/grasp_simulator.h"
 #include "server/files.h"
 #include "server/jobs/backup_folder.h"
+#include "server/jobs/live_grasp.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -72,12 +73,6 @@ struct VerifyOrder {
 struct VerifiedGrasp {
   StoredGrasp grasp;
   PhysicalVerdict verdict;
-};
-
-/** A grasp that a running transfer has found and not stored yet. */
-struct LiveGrasp {
-  std::string id;
-  std::string json;  ///< As it will be answered once stored.
 };
 
 using GraspCallback = std::function<void(const StoredGrasp&)>;

@@ -626,10 +626,13 @@ export interface paths {
             readonly path?: never;
             readonly cookie?: never;
         };
-        /** The backups. Not built yet. */
+        /** The backups beside the database, newest first. */
         readonly get: operations["listBackups"];
         readonly put?: never;
-        /** A consistent copy of the database. Not built yet. */
+        /**
+         * Make a consistent copy of the database while it is used.
+         * @description The file lies in the folder DATABASE.backups of the server's machine, with its checksum beside it. Those older than the newest --max-backups are removed. To restore one, serve a copy of it.
+         */
         readonly post: operations["postBackup"];
         readonly delete?: never;
         readonly options?: never;
@@ -1235,6 +1238,17 @@ export interface components {
             readonly created_at: components["schemas"]["Time"];
             readonly started_at: components["schemas"]["Time"] | null;
             readonly finished_at: components["schemas"]["Time"] | null;
+        };
+        readonly Backup: {
+            /** @description The file's name in the folder of backups. */
+            readonly name: string;
+            readonly bytes: number;
+            readonly sha256: string;
+            readonly created_at: components["schemas"]["Time"];
+        };
+        readonly BackupList: {
+            readonly items: readonly components["schemas"]["Backup"][];
+            readonly next_cursor: components["schemas"]["Cursor"];
         };
         readonly JobList: {
             readonly items: readonly components["schemas"]["Job"][];
@@ -2764,19 +2778,45 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
-            readonly 501: components["responses"]["NotImplemented"];
+            /** @description All that are kept. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["BackupList"];
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postBackup: {
         readonly parameters: {
             readonly query?: never;
-            readonly header?: never;
+            readonly header?: {
+                /** @description The same request with the same key has one effect and gets the first answer again. */
+                readonly "Idempotency-Key"?: components["parameters"]["IdempotencyKey"];
+            };
             readonly path?: never;
             readonly cookie?: never;
         };
         readonly requestBody?: never;
         readonly responses: {
-            readonly 501: components["responses"]["NotImplemented"];
+            /** @description It is whole and on the disk. */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Backup"];
+                };
+            };
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 409: components["responses"]["Conflict"];
+            readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
 }

@@ -644,6 +644,18 @@ TEST_F(ServiceTest, AJobThatTheServersEndInterruptedIsDoneByTheNext) {
             JobState::kSucceeded);
 }
 
+TEST_F(ServiceTest, OneServerAtATimeWorksOnADatabasesJobs) {
+  const std::string db = Copy("learned");
+  const auto first = MakeService(db);
+  const auto second = MakeService(db);
+  ASSERT_TRUE(first->StartWorkers());
+  const auto refused = second->StartWorkers();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+  first->StopWorkers();
+  EXPECT_TRUE(second->StartWorkers());
+}
+
 TEST_F(ServiceTest, TransfersAndImportsDoNotWaitForLearning) {
   const auto service = MakeService(Copy("learned"));
   ASSERT_TRUE(service->StartWorkers());
