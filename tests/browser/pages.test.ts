@@ -143,6 +143,7 @@ describe('an upload', () => {
     });
     await page.getByLabel('Category').selectOption('mug');
     await page.getByLabel('Source grasps per part').fill('10');
+    await page.getByLabel('Grasps wanted').fill('2');
     await page.getByRole('button', { name: 'Find grasps' }).click();
     await page.getByText(/[1-9]\d* grasps? so far/).waitFor({ timeout: JOB_LIMIT });
     await page.waitForTimeout(1500); // For the picture: the stream never lets the network rest.
@@ -150,6 +151,14 @@ describe('an upload', () => {
     await page.getByText(/^Succeeded: [1-9]/).waitFor({ timeout: JOB_LIMIT });
     await visitor.settle();
     await visitor.picture('upload-done');
+    const id = new URL(page.url()).searchParams.get('job') ?? '';
+    const job = (await (await page.request.get(`/v1/jobs/${id}`)).json()) as {
+      result: { href: string };
+    };
+    const transfer = (await (await page.request.get(job.result.href)).json()) as {
+      enough: number | null;
+    };
+    expect(transfer.enough).toBe(2);
     expect(await option(page, 0).count()).toBe(1);
     // The link still works when the job has ended.
     await visitor.visit(page.url());

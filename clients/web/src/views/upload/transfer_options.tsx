@@ -18,12 +18,11 @@ export function TransferOptions({ settings, onChange }: TransferOptionsProps) {
   return (
     <>
       <label class="field">
-        <span>Grasps wanted</span>
+        <span>Grasps wanted (empty: all)</span>
         <input
           type="number"
           min="1"
           max="1000"
-          placeholder="all"
           value={settings.count}
           onChange={(event) => {
             const count = event.currentTarget.valueAsNumber;
