@@ -85,7 +85,8 @@ struct PartAlignment {
 };
 
 /** Hears of each record of a result in order, as soon as it and those before it
- have ended: its place in TransferResult::records, and itself. Called from the
+ have ended: its place in TransferResult::records, and itself; once more of one
+ that was tried again. Called from the
  computing threads, one at a time. */
 using RecordCallback = std::function<void(int, const TransferRecord&)>;
 
@@ -107,7 +108,9 @@ struct TransferRequest {
   std::vector<int> keep_free;
   int sources_per_part{40};
   /** When set, those that promise most are tried first, the parts in turn, and
-   no more once so many grasps hold transfer.sure_grip of their copies. */
+   no more once so many grasps hold transfer.sure_grip of their copies: all with
+   replan.quick_climb_samples, and if that is not enough those that came nearest
+   once more with replan.climb_samples. */
   std::optional<int> enough;
   bool assemble{true};
   Parameters parameters;

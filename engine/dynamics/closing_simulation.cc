@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include "engine/dynamics/touch_finder.h"
 
 namespace graspdb {
@@ -85,6 +83,14 @@ ClosingSimulation::ClosingSimulation(const HandShape& hand, const Solid& solid,
       joints_.push_back(one);
     }
   }
+  // Joints that move one link touch the object together.
+  std::vector<std::pair<int, int>> couples;
+  for (const std::vector<int>& movers : movers_) {
+    for (size_t i = 1; i < movers.size(); ++i) {
+      couples.emplace_back(movers[i - 1], movers[i]);
+    }
+  }
+  system_ = ArrowSystem(static_cast<int>(joints_.size()), couples);
 }
 
 // One closing. The world W is the object's frame before it moved.
@@ -97,13 +103,15 @@ class ClosingRun {
         hand_(simulation.hand_),
         solid_(simulation.solid_),
         joints_(simulation.joints_),
-        size_(6 + static_cast<Eigen::Index>(joints_.size())),
         friction_(friction),
         X_WH_(X_WH),
-        finder_(hand_, solid_, simulation.near_) {
+        finder_(hand_, solid_, simulation.near_),
+        free_(simulation.system_),
+        touching_(simulation.system_) {
     state_.q = q;
     state_.p_WC = solid_.mass().p_McCM;
-    state_.velocity = Eigen::VectorXd::Zero(size_);
+    state_.velocity =
+        Eigen::VectorXd::Zero(6 + static_cast<Eigen::Index>(joints_.size()));
     blocked_.assign(joints_.size(), false);
     speeds_.assign(joints_.size(), 0.0);
     twists_.resize(joints_.size());
@@ -185,9 +193,9 @@ class ClosingRun {
     for (int link = 0; link < hand_.model().num_links(); ++link) {
       const double speed = CalcTurningSpeed(link);
       if (!hand_.link(link) || speed == 0.0) continue;
-      const double gap =
-          EstimateGap(*hand_.link(link), X_OH * X_HL[static_cast<size_t>(link)],
-                      solid_, kLeapNear + worth * speed);
+      const double gap = EstimateGap(
+          *hand_.link(link), X_OH * X_HL[static_cast<size_t>(link)], solid_,
+          {kLeapNear + worth * speed, kLeapNear + seconds * speed});
       seconds = std::min(seconds, (gap - kLeapNear) / speed);
       if (seconds < worth) return 0.0;
     }
@@ -290,45 +298,42 @@ class ClosingRun {
   void Step(const Eigen::Vector3d& push) {
     FindTouches();
     const double dt = parameters_.time_step;
-    Eigen::MatrixXd& A0 = A0_;
-    Eigen::VectorXd& b0 = b0_;
-    A0.setZero(size_, size_);
-    b0.setZero(size_);
-    A0.topLeftCorner<3, 3>().diagonal().setConstant(parameters_.mass / dt);
-    A0.block<3, 3>(3, 3) = parameters_.mass / dt * state_.R_WO *
-                           solid_.mass().gyration * state_.R_WO.transpose();
-    b0.head<6>() = A0.topLeftCorner<6, 6>() * state_.velocity.head<6>();
-    b0.head<3>() += push;
+    ArrowSystem& system = free_;
+    system.SetZero();
+    system.body().topLeftCorner<3, 3>().diagonal().setConstant(
+        parameters_.mass / dt);
+    system.body().bottomRightCorner<3, 3>() =
+        parameters_.mass / dt * state_.R_WO * solid_.mass().gyration *
+        state_.R_WO.transpose();
+    system.body_right() = system.body() * state_.velocity.head<6>();
+    system.body_right().head<3>() += push;
     for (size_t k = 0; k < joints_.size(); ++k) {
       const auto& joint = joints_[k];
-      const auto i = 6 + static_cast<Eigen::Index>(k);
+      const auto i = static_cast<int>(k);
       const double lead =
           state_.motors[static_cast<Eigen::Index>(k)] - state_.q[joint.joint];
-      A0(i, i) = joint.armature / dt + joint.damping;
-      b0[i] = joint.armature / dt * state_.velocity[i];
+      double& weight = system.joint(i, i);
+      double& right = system.right(i);
+      weight = joint.armature / dt + joint.damping;
+      right = joint.armature / dt * state_.velocity[6 + i];
       if (std::abs(joint.stiffness * lead) < joint.holding_torque) {
-        A0(i, i) += joint.stiffness * dt;
-        b0[i] += joint.stiffness * lead;
+        weight += joint.stiffness * dt;
+        right += joint.stiffness * lead;
       } else {
-        b0[i] += std::copysign(joint.holding_torque, lead);
+        right += std::copysign(joint.holding_torque, lead);
       }
     }
-    Eigen::VectorXd& x = x_;
-    x = state_.velocity;
     for (int pass = 0; pass < kPasses; ++pass) {
-      A_ = A0;
-      b_ = b0;
-      for (const Contacts& contacts : contacts_) AddContacts(contacts, x);
-      solver_.compute(A_);
-      x = solver_.solve(b_);
+      touching_ = free_;
+      for (const Contacts& contacts : contacts_) AddContacts(contacts);
+      touching_.Solve(state_.velocity);
     }
-    state_.velocity = x;
     Move();
   }
 
-  // What a link's touches press and rub, given the speeds x of the pass
-  // before, to the lower half of A and to b.
-  void AddContacts(const Contacts& contacts, const Eigen::VectorXd& x) {
+  // What a link's touches press and rub, given the speeds of the pass before.
+  void AddContacts(const Contacts& contacts) {
+    const Eigen::VectorXd& x = state_.velocity;
     const double dt = parameters_.time_step;
     const double stiffness = parameters_.contact_stiffness;
     const std::vector<int>& movers =
@@ -369,16 +374,17 @@ class ClosingRun {
     M.topRightCorner<3, 3>() -= MakeCross(first);
     M.bottomRightCorner<3, 3>() -= second;
     M.bottomRightCorner<3, 3>().diagonal().array() += second.trace();
-    A_.topLeftCorner<6, 6>() += M;
-    b_.head<6>() -= w;
+    touching_.body() += M;
+    touching_.body_right() -= w;
     for (const int k : movers) {
       const Twist& of_k = twists_[static_cast<size_t>(k)];
       const Twist M_k = M * of_k;
-      A_.block<1, 6>(6 + k, 0) -= M_k.transpose();
-      b_[6 + k] += w.dot(of_k);
+      touching_.coupling(k) -= M_k;
+      touching_.right(k) += w.dot(of_k);
       for (const int other : movers) {
         if (other > k) break;
-        A_(6 + k, 6 + other) += M_k.dot(twists_[static_cast<size_t>(other)]);
+        touching_.joint(k, other) +=
+            M_k.dot(twists_[static_cast<size_t>(other)]);
       }
     }
   }
@@ -457,7 +463,6 @@ class ClosingRun {
   const HandShape& hand_;
   const Solid& solid_;
   const std::vector<ClosingSimulation::ClosingJoint>& joints_;
-  const Eigen::Index size_;
   const double friction_;
   const RigidTransform X_WH_;
   State state_;
@@ -468,9 +473,8 @@ class ClosingRun {
   std::vector<Contacts> contacts_;
   std::vector<RigidTransform> X_WL_;
   std::vector<Twist> twists_;  // Of the closing joints, about p_WC.
-  Eigen::MatrixXd A0_, A_;
-  Eigen::VectorXd b0_, b_, x_;
-  Eigen::LLT<Eigen::MatrixXd> solver_;  // Reads the lower half.
+  ArrowSystem free_;           // Of a step without touches, and …
+  ArrowSystem touching_;       // … with them.
 };
 
 ClosingOutcome ClosingSimulation::Run(const RigidTransform& X_OH,

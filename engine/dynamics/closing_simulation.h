@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/dynamics/arrow_system.h"
 #include "engine/geometry/solid.h"
 #include "engine/hand/hand_shape.h"
 #include "engine/parameters/grasp_parameters.h"
@@ -76,6 +77,7 @@ class ClosingSimulation {
   const HoldParameters parameters_;
   std::vector<ClosingJoint> joints_;
   std::vector<std::vector<int>> movers_;  // Per link: indices into joints_.
+  ArrowSystem system_{0, {}};             // All zero.
   double near_{0.0};  // What is as near as that may touch within a step, m.
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -43,18 +44,32 @@ class TouchFinder {
     Watch& watch = watches_[static_cast<size_t>(link)];
     if (watch.travel >= watch.until) Fill(link, X_OL, watch);
     const PosedField field(*field_, X_OL);
+    // Those that are awake, four at a time.
+    Points4 points;
+    std::array<Probe*, 4> batch;
+    int size = 0;
+    const auto look = [&] {
+      const Floats4 distances = field(points);
+      for (int lane = 0; lane < size; ++lane) {
+        Probe& probe = *batch[static_cast<size_t>(lane)];
+        const double distance = distances[lane];
+        if (distance > near) {
+          probe.wake = watch.travel + distance - near_;
+          continue;
+        }
+        const Eigen::Vector3d gradient = field_->CalcGradient(X_OL * probe.p_L);
+        const double norm = gradient.norm();
+        if (norm > 0.0) visit(probe.p_L, distance, gradient / norm);
+      }
+      size = 0;
+    };
     for (Probe& probe : watch.probes) {
       if (watch.travel < probe.wake) continue;
-      const double distance = field(probe.p_L);
-      if (distance > near) {
-        probe.wake = watch.travel + distance - near_;
-        continue;
-      }
-      const Eigen::Vector3d p_O = X_OL * probe.p_L;
-      const Eigen::Vector3d gradient = field_->CalcGradient(p_O);
-      const double norm = gradient.norm();
-      if (norm > 0.0) visit(probe.p_L, distance, gradient / norm);
+      points.Set(size, probe.p_L);
+      batch[static_cast<size_t>(size++)] = &probe;
+      if (size == 4) look();
     }
+    if (size > 0) look();
   }
 
  private:

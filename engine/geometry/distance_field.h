@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "engine/geometry/points4.h"
 #include "engine/geometry/surface_index.h"
 #include "engine/geometry/triangle_mesh.h"
 #include "engine/math/rigid_transform.h"
@@ -28,7 +31,8 @@ class DistanceField {
 
   /** The signed distance at p, m; negative inside. The true one is nowhere
    smaller than this, less max_error(); within a cell of the surface it is no
-   larger than this, plus max_error(), either. */
+   larger than this, plus max_error(), either. Where this is below -max_error(),
+   p is inside. */
   double Calc(const Eigen::Vector3d& p_M) const;
 
   /** The slope of Calc() at p, out of the solid, not normalised; zero outside
@@ -106,8 +110,8 @@ class DistanceField {
 };
 
 /** The field as a body sees it that stands somewhere: Calc() for points of the
- body's frame L. Single precision: what that errs is within max_error(). Refers
- to the field. */
+ body's frame L, one or four at a time. Single precision: what that errs is
+ within max_error(). Refers to the field. */
 class PosedField {
  public:
   PosedField(const DistanceField& field, const RigidTransform& X_ML)
@@ -130,48 +134,96 @@ class PosedField {
   }
 
   double operator()(const Eigen::Vector3d& p_L) const {
-    // In cells from the grid's origin; the fourth is always zero.
-    const Eigen::Array4f u = static_cast<float>(p_L.x()) * x_ +
-                             static_cast<float>(p_L.y()) * y_ +
-                             static_cast<float>(p_L.z()) * z_ + shift_;
-    const Eigen::Array4f inside = u.max(0.0F).min(last_);
-    const float value = Interpolate(inside);
+    Points4 points;
+    points.Set(0, p_L);
+    return (*this)(points)[0];
+  }
+
+  Floats4 operator()(const Points4& p_L) const {
+    // In cells from the grid's origin.
+    const auto transform = [&p_L, this](int k) {
+      return x_[k] * p_L.x + y_[k] * p_L.y + z_[k] * p_L.z + shift_[k];
+    };
+    const Floats4 u = transform(0);
+    const Floats4 v = transform(1);
+    const Floats4 w = transform(2);
+    const Floats4 zero{};
+    const auto clamp = [&zero, this](const Floats4& value, int k) {
+      const Floats4 positive = value > zero ? value : zero;
+      const Floats4 last = last_[k] + zero;
+      return positive < last ? positive : last;
+    };
+    const Floats4 u_inside = clamp(u, 0);
+    const Floats4 v_inside = clamp(v, 1);
+    const Floats4 w_inside = clamp(w, 2);
+    const Floats4 value = Interpolate(u_inside, v_inside, w_inside);
     // Beyond the grid, both are proven: the mesh ends margin_ before it does,
     // and distance has Lipschitz constant one.
-    const float beyond_squared = (u - inside).square().sum();
-    if (beyond_squared == 0.0F) return value;
-    const float beyond = cell_ * std::sqrt(beyond_squared);
-    return std::max(beyond + margin_, value - beyond);
+    const Floats4 du = u - u_inside;
+    const Floats4 dv = v - v_inside;
+    const Floats4 dw = w - w_inside;
+    const Floats4 beyond_squared = du * du + dv * dv + dw * dw;
+    Floats4 result = value;
+    for (int lane = 0; lane < 4; ++lane) {
+      if (beyond_squared[lane] == 0.0F) continue;
+      const float beyond = cell_ * std::sqrt(beyond_squared[lane]);
+      result[lane] = std::max(beyond + margin_, value[lane] - beyond);
+    }
+    return result;
   }
 
  private:
-  float Interpolate(const Eigen::Array4f& u) const {
-    const int ix = std::min(static_cast<int>(u[0]), last_cell_[0]);
-    const int iy = std::min(static_cast<int>(u[1]), last_cell_[1]);
-    const int iz = std::min(static_cast<int>(u[2]), last_cell_[2]);
-    const float tx = u[0] - static_cast<float>(ix);
-    const float ty = u[1] - static_cast<float>(iy);
-    const float tz = u[2] - static_cast<float>(iz);
-    const float* v = values_ + (ix + stride_y_ * iy + stride_z_ * iz);
-    const auto along_x = [tx](const float* row) {
-      return row[0] + tx * (row[1] - row[0]);
+  using Floats2 = float __attribute__((vector_size(8)));
+
+  // The values of four nodes and of those next to them along x.
+  static std::pair<Floats4, Floats4> LoadRows(const float* values,
+                                              const Ints4& index) {
+    const auto load = [values, &index](int lane) {
+      Floats2 pair;
+      std::memcpy(&pair, values + index[lane], sizeof(pair));
+      return pair;
     };
-    const float a = along_x(v);
-    const float b = along_x(v + stride_y_);
-    const float c = along_x(v + stride_z_);
-    const float d = along_x(v + stride_z_ + stride_y_);
-    const float low = a + ty * (b - a);
-    const float high = c + ty * (d - c);
+    const Floats4 ab = __builtin_shufflevector(load(0), load(1), 0, 1, 2, 3);
+    const Floats4 cd = __builtin_shufflevector(load(2), load(3), 0, 1, 2, 3);
+    return {__builtin_shufflevector(ab, cd, 0, 2, 4, 6),
+            __builtin_shufflevector(ab, cd, 1, 3, 5, 7)};
+  }
+
+  // Within the grid.
+  Floats4 Interpolate(const Floats4& u, const Floats4& v,
+                      const Floats4& w) const {
+    const auto find_cell = [this](const Floats4& value, int k) {
+      const Ints4 cell = __builtin_convertvector(value, Ints4);
+      const Ints4 last = last_cell_[k] + Ints4{};
+      return cell < last ? cell : last;
+    };
+    const Ints4 ix = find_cell(u, 0);
+    const Ints4 iy = find_cell(v, 1);
+    const Ints4 iz = find_cell(w, 2);
+    const Floats4 tx = u - __builtin_convertvector(ix, Floats4);
+    const Floats4 ty = v - __builtin_convertvector(iy, Floats4);
+    const Floats4 tz = w - __builtin_convertvector(iz, Floats4);
+    const Ints4 index = ix + stride_y_ * iy + stride_z_ * iz;
+    const auto along_x = [&](int offset) {
+      const auto [here, next] = LoadRows(values_ + offset, index);
+      return here + tx * (next - here);
+    };
+    const Floats4 a = along_x(0);
+    const Floats4 b = along_x(stride_y_);
+    const Floats4 c = along_x(stride_z_);
+    const Floats4 d = along_x(stride_z_ + stride_y_);
+    const Floats4 low = a + ty * (b - a);
+    const Floats4 high = c + ty * (d - c);
     return low + tz * (high - low);
   }
 
   // Columns of the body's axes, and where it stands, in cells.
-  Eigen::Array4f x_{Eigen::Array4f::Zero()};
-  Eigen::Array4f y_{Eigen::Array4f::Zero()};
-  Eigen::Array4f z_{Eigen::Array4f::Zero()};
-  Eigen::Array4f shift_{Eigen::Array4f::Zero()};
-  Eigen::Array4f last_{Eigen::Array4f::Zero()};
-  std::array<int, 3> last_cell_{};
+  std::array<float, 3> x_;
+  std::array<float, 3> y_;
+  std::array<float, 3> z_;
+  std::array<float, 3> shift_;
+  std::array<float, 3> last_;
+  std::array<int, 3> last_cell_;
   const float* values_;
   int stride_y_;
   int stride_z_;

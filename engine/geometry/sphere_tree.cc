@@ -11,15 +11,26 @@
 namespace graspdb {
 namespace {
 
-constexpr int kProbesPerLeaf = 6;
+constexpr int kLanes = 4;
+// What rounding a centre to single precision moves it by at most, m.
+constexpr double kRounding = 1e-7;
 
 }  // namespace
 
 SphereTree::SphereTree(const TriangleMesh& mesh_L, double spacing) {
   GRASPDB_EXPECTS(mesh_L.num_triangles() > 0 && spacing > 0.0);
   std::vector<Ball> balls = SpreadProbes(mesh_L, spacing);
-  nodes_.emplace_back();
-  Build(0, 0, static_cast<int>(balls.size()), balls);
+  groups_.emplace_back();
+  group_balls_.emplace_back();
+  const auto count = static_cast<int>(balls.size());
+  if (Build(balls, 0, count) < 0) {
+    // A lone leaf: the root has no other child.
+    Group& root = groups_[0];
+    root.centers.Set(0, leaf_balls_[0].p);
+    root.radii[0] = static_cast<float>(leaf_balls_[0].radius + kRounding);
+    root.children[0] = ~0;
+    group_balls_[0] = leaf_balls_[0];
+  }
   for (const Ball& ball : balls) probes_.push_back(ball.p);
 }
 
@@ -32,13 +43,12 @@ double SphereTree::CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
   double best = 1e300;
   std::vector<Pair> stack;
   const auto enter = [&](int a, int b) {
-    const Node& node_A = nodes_[a];
-    const Node& node_B = B.nodes_[b];
-    const double apart = (node_A.center - X_AB * node_B.center).norm();
-    const double radii = node_A.radius + node_B.radius;
-    const bool small = node_A.num_probes > 0 && node_B.num_probes > 0;
+    const Ball& ball_A = BallOf(a);
+    const Ball& ball_B = B.BallOf(b);
+    const double apart = (ball_A.p - X_AB * ball_B.p).norm();
+    const double radii = ball_A.radius + ball_B.radius;
     // Far enough for their size: looking closer would gain little.
-    if (small || radii <= 0.5 * apart) {
+    if ((IsLeaf(a) && IsLeaf(b)) || radii <= 0.5 * apart) {
       best = std::min(best, apart - radii);
     } else if (apart - radii < best) {
       stack.push_back({a, b, apart - radii});
@@ -49,16 +59,17 @@ double SphereTree::CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
     const Pair top = stack.back();
     stack.pop_back();
     if (top.bound >= best) continue;
-    const Node& node_A = nodes_[top.a];
-    const Node& node_B = B.nodes_[top.b];
     const bool split_A =
-        node_B.num_probes > 0 ||
-        (node_A.num_probes == 0 && node_A.radius > node_B.radius);
-    for (int child = 0; child < 2; ++child) {
+        IsLeaf(top.b) ||
+        (!IsLeaf(top.a) && BallOf(top.a).radius > B.BallOf(top.b).radius);
+    const Group& group = split_A ? groups_[static_cast<size_t>(top.a)]
+                                 : B.groups_[static_cast<size_t>(top.b)];
+    for (int lane = 0; lane < kLanes && group.radii[lane] >= 0.0F; ++lane) {
+      const int child = group.children[static_cast<size_t>(lane)];
       if (split_A) {
-        enter(node_A.first + child, top.b);
+        enter(child, top.b);
       } else {
-        enter(top.a, node_B.first + child);
+        enter(top.a, child);
       }
     }
   }
@@ -102,8 +113,8 @@ std::vector<SphereTree::Ball> SphereTree::SpreadProbes(
   return balls;
 }
 
-void SphereTree::Build(int node, int first, int count,
-                       std::vector<Ball>& balls) {
+SphereTree::Ball SphereTree::Enclose(const std::vector<Ball>& balls, int first,
+                                     int count) {
   const auto begin = balls.begin() + first;
   const auto end = begin + count;
   Eigen::Vector3d low = begin->p, high = begin->p;
@@ -111,29 +122,73 @@ void SphereTree::Build(int node, int first, int count,
     low = low.cwiseMin(it->p);
     high = high.cwiseMax(it->p);
   }
-  Node result;
-  result.center = 0.5 * (low + high);
+  Ball ball{0.5 * (low + high), 0.0};
   for (auto it = begin; it != end; ++it) {
-    result.radius =
-        std::max(result.radius, (it->p - result.center).norm() + it->radius);
+    ball.radius = std::max(ball.radius, (it->p - ball.p).norm() + it->radius);
   }
-  if (count <= kProbesPerLeaf) {
-    result.first = first;
-    result.num_probes = count;
-    nodes_[node] = result;
-    return;
+  return ball;
+}
+
+// Sorts them along their longest side and cuts them in the middle, so that the
+// first half fills its leaves. @returns how many are in it.
+int SphereTree::Split(std::vector<Ball>& balls, int first, int count) {
+  const auto begin = balls.begin() + first;
+  Eigen::Vector3d low = begin->p, high = begin->p;
+  for (auto it = begin; it != begin + count; ++it) {
+    low = low.cwiseMin(it->p);
+    high = high.cwiseMax(it->p);
   }
   int axis = 0;
   (high - low).maxCoeff(&axis);
-  std::stable_sort(begin, end, [axis](const Ball& a, const Ball& b) {
+  std::stable_sort(begin, begin + count, [axis](const Ball& a, const Ball& b) {
     return a.p[axis] < b.p[axis];
   });
-  result.first = static_cast<int>(nodes_.size());
-  nodes_[node] = result;
-  nodes_.emplace_back();
-  nodes_.emplace_back();
-  Build(result.first, first, count / 2, balls);
-  Build(result.first + 1, first + count / 2, count - count / 2, balls);
+  return kLanes * ((count + 2 * kLanes - 1) / (2 * kLanes));
+}
+
+// @returns the child: a leaf for up to four balls, else a group; the group 0
+// when it is still empty.
+int SphereTree::Build(std::vector<Ball>& balls, int first, int count) {
+  if (count <= kLanes) {
+    Leaf leaf;
+    leaf.first = first;
+    leaf.count = count;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int i = first + (lane < count ? lane : 0);
+      leaf.probes.Set(lane, balls[static_cast<size_t>(i)].p);
+    }
+    leaves_.push_back(leaf);
+    leaf_balls_.push_back(Enclose(balls, first, count));
+    return ~static_cast<int>(leaves_.size() - 1);
+  }
+  int self = 0;
+  if (group_balls_[0].radius > 0.0) {
+    self = static_cast<int>(groups_.size());
+    groups_.emplace_back();
+    group_balls_.emplace_back();
+  }
+  group_balls_[static_cast<size_t>(self)] = Enclose(balls, first, count);
+  // Halves, and halves of those that are more than a leaf.
+  std::vector<std::pair<int, int>> pieces;
+  const int half = Split(balls, first, count);
+  for (const auto& [begin, size] :
+       {std::pair(first, half), std::pair(first + half, count - half)}) {
+    if (size <= kLanes) {
+      pieces.emplace_back(begin, size);
+      continue;
+    }
+    const int quarter = Split(balls, begin, size);
+    pieces.emplace_back(begin, quarter);
+    if (size > quarter) pieces.emplace_back(begin + quarter, size - quarter);
+  }
+  for (size_t lane = 0; lane < pieces.size(); ++lane) {
+    const int child = Build(balls, pieces[lane].first, pieces[lane].second);
+    Group& group = groups_[static_cast<size_t>(self)];
+    group.children[lane] = child;
+    group.centers.Set(static_cast<int>(lane), BallOf(child).p);
+    group.radii[lane] = static_cast<float>(BallOf(child).radius + kRounding);
+  }
+  return self;
 }
 
 }  // namespace graspdb

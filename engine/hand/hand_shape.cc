@@ -11,6 +11,8 @@ namespace {
 // Between the probes of a link, metres: it bulges by a tenth of a millimetre
 // there at most.
 constexpr double kProbeSpacing = 0.002;
+// Where only the sign of a distance matters.
+constexpr DistanceRange kSign{0.0, 1e-9};
 
 // The joints of `link` and its ancestors, the nearest first.
 std::vector<int> ListJointsTowardsBase(const HandModel& hand, int link) {
@@ -72,21 +74,24 @@ HandShape::HandShape(std::shared_ptr<const HandModel> model)
 }
 
 double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
-                    const Solid& solid, double enough) {
+                    const Solid& solid, const DistanceRange& range) {
   const double error = solid.field().max_error();
   return link.tree.CalcLowerBound(PosedField(solid.field(), X_OL),
-                                  enough + error) -
+                                  {range.enough + error, range.most + error}) -
          error;
 }
 
 double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
-                   const Solid& solid, double enough) {
-  return link.tree.EstimateMinimum(PosedField(solid.field(), X_OL), enough);
+                   const Solid& solid, const DistanceRange& range) {
+  return link.tree.EstimateMinimum(PosedField(solid.field(), X_OL), range);
 }
 
 bool LinkCollides(const LinkShape& link, const RigidTransform& X_OL,
                   const Solid& solid) {
-  if (CalcGapBound(link, X_OL, solid, 0.0) > 0.0) return false;
+  if (CalcGapBound(link, X_OL, solid, kSign) > 0.0) return false;
+  // A probe that is certainly inside: FCL need not be asked.
+  const double error = solid.field().max_error();
+  if (EstimateGap(link, X_OL, solid, {-error, 0.0}) < -error) return true;
   if (solid.shape().Intersects(link.shape, X_OL)) return true;
   // No surfaces cross: either free, or wholly inside.
   const Eigen::Vector3d p_O = X_OL * link.tree.probes()[0];
@@ -110,7 +115,7 @@ int EstimateCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
                           const Solid& solid) {
   for (int i = 0; i < hand.model().num_links(); ++i) {
     if (hand.link(i) &&
-        EstimateGap(*hand.link(i), X_OH * X_HL[i], solid, 0.0) < 0.0) {
+        EstimateGap(*hand.link(i), X_OH * X_HL[i], solid, kSign) < 0.0) {
       return i;
     }
   }

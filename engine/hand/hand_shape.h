@@ -86,15 +86,15 @@ double CalcLinkGapBound(const HandShape& hand, int link_A, int link_B,
 bool LinksCollide(const HandShape& hand, int link_A, int link_B,
                   const std::vector<RigidTransform>& X_HL);
 
-/** A proven lower bound, m, of the gap between a link and the solid. Once it is
- known to be below `enough`, any value below that is returned. */
+/** A proven lower bound, m, of the gap between a link and the solid; within the
+ range. */
 double CalcGapBound(const LinkShape& link, const RigidTransform& X_OL,
-                    const Solid& solid, double enough);
+                    const Solid& solid, const DistanceRange& range = {});
 
 /** The gap, m, as the interpolated field tells it, to a few tenths of a
- millimetre near contact and to a half farther away; once it is known to be
- below `enough`, any value below that. For choosing steps, not for deciding. */
+ millimetre near contact and to a half farther away; within the range. For
+ choosing steps, not for deciding. */
 double EstimateGap(const LinkShape& link, const RigidTransform& X_OL,
-                   const Solid& solid, double enough = -1e300);
+                   const Solid& solid, const DistanceRange& range = {});
 
 }  // namespace graspdb

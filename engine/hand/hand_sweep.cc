@@ -70,8 +70,8 @@ class Sweep {
     double step = 1.0;
     for (int i = 0; i < hand_.model().num_links(); ++i) {
       if (!hand_.link(i) || speed_[i] == 0.0) continue;
-      const double gap =
-          CalcGapBound(*hand_.link(i), here.X_OH * X_HL[i], solid_, fine_step_);
+      const double gap = CalcGapBound(*hand_.link(i), here.X_OH * X_HL[i],
+                                      solid_, {.enough = fine_step_});
       if (gap < fine_step_) near_.push_back(i);
       step = std::min(step, std::max(gap, fine_step_) / speed_[i]);
     }

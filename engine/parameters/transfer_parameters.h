@@ -127,6 +127,7 @@ struct ReplanParameters {
   double enough_grip{0.95};
   double behind_cost{0.1};
   int climb_samples{600};
+  int quick_climb_samples{100};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -185,6 +186,9 @@ struct ReplanParameters {
     f("climb_samples", self.climb_samples,
       ParameterInfo{"1", 0, 1e6,
                     "ours: tries around the best to get there, at most"});
+    f("quick_climb_samples", self.quick_climb_samples,
+      ParameterInfo{"1", 0, 1e6,
+                    "ours: of them at first, when a few sure grasps do"});
   }
   bool operator==(const ReplanParameters&) const = default;
 };

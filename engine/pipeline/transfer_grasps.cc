@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/parallel.h"
@@ -73,30 +74,7 @@ class Transferrer {
     if (context_.Cancelled()) {
       return Error{ErrorCode::kCancelled, "the transfer was cancelled"};
     }
-    if (request_.enough) SortByPromise(result.records);
-    int found = 0;
-    std::atomic<bool> complete{true};
-    const int count = static_cast<int>(result.records.size());
-    const int tried = ParallelUntil(
-        count,
-        [&](int i, const Wanted& wanted) {
-          TransferOne(result.records[i],
-                      [&] { return wanted() && !context_.Cancelled(); });
-          if (context_.Cancelled()) complete = false;
-        },
-        [&](int i) {
-          const TransferRecord& record = result.records[i];
-          if (request_.on_record) request_.on_record(i, record);
-          if (IsSure(record)) ++found;
-          double share = (i + 1.0) / count;
-          if (request_.enough) {
-            share = std::max(share, 1.0 * found / *request_.enough);
-          }
-          context_.ReportProgress("transferring", 0.1 + 0.9 * share);
-          return request_.enough && found >= *request_.enough;
-        });
-    result.records.resize(static_cast<size_t>(tried));
-    result.complete = complete;
+    TryAll(result);
     return result;
   }
 
@@ -181,11 +159,81 @@ class Transferrer {
     return start;
   }
 
+  // All sources; or, when a few sure grasps are enough, all with few tries
+  // until there are so many, and only then those that came nearest with more.
+  void TryAll(TransferResult& result) {
+    std::vector<TransferRecord>& records = result.records;
+    const ReplanParameters& replan = parameters_.replan;
+    if (!request_.enough) {
+      Try(records, MakeOrder(records.size()), replan.climb_samples, 1.0,
+          result);
+      return;
+    }
+    SortByPromise(records);
+    const int climb =
+        std::min(replan.quick_climb_samples, replan.climb_samples);
+    const int tried =
+        Try(records, MakeOrder(records.size()), climb, 0.8, result);
+    records.resize(static_cast<size_t>(tried));
+    if (found_ >= *request_.enough || climb == replan.climb_samples) return;
+    std::vector<int> unsure;
+    for (int i = 0; i < tried; ++i) {
+      if (FindGrasp(records[i]) && !IsSure(records[i])) unsure.push_back(i);
+    }
+    std::stable_sort(unsure.begin(), unsure.end(), [&](int a, int b) {
+      return records[a].robust.gripped > records[b].robust.gripped;
+    });
+    Try(records, unsure, replan.climb_samples, 1.0, result);
+  }
+
+  static std::vector<int> MakeOrder(size_t count) {
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+
+  // Tries records, anew, until there are enough sure ones. @returns how many of
+  // the order were tried; the other records are as they were.
+  int Try(std::vector<TransferRecord>& records, const std::vector<int>& order,
+          int climb_samples, double end, TransferResult& result) {
+    const auto count = static_cast<int>(order.size());
+    std::vector<TransferRecord> tried(order.size());
+    std::atomic<bool> complete{true};
+    const double begin = std::exchange(share_, end);
+    const int last = ParallelUntil(
+        count,
+        [&](int i, const Wanted& wanted) {
+          tried[i].part = records[order[i]].part;
+          tried[i].source_grasp = records[order[i]].source_grasp;
+          TransferOne(tried[i], climb_samples,
+                      [&] { return wanted() && !context_.Cancelled(); });
+          if (context_.Cancelled()) complete = false;
+        },
+        [&](int i) {
+          TransferRecord& record = records[order[i]];
+          record = std::move(tried[i]);
+          if (request_.on_record) request_.on_record(order[i], record);
+          if (IsSure(record)) ++found_;
+          double share = (i + 1.0) / count;
+          if (request_.enough) {
+            share = std::max(share, 1.0 * found_ / *request_.enough);
+          }
+          context_.ReportProgress("transferring",
+                                  begin + (end - begin) * share);
+          return request_.enough && found_ >= *request_.enough;
+        });
+    result.complete = result.complete && complete;
+    return last;
+  }
+
+  const std::optional<Grasp>& FindGrasp(const TransferRecord& record) const {
+    return request_.assemble ? record.assembled : record.transferred;
+  }
+
   // Good enough not to look for a better one.
   bool IsSure(const TransferRecord& record) const {
-    const auto& grasp =
-        request_.assemble ? record.assembled : record.transferred;
-    return grasp && record.robust.gripped >= parameters_.transfer.sure_grip;
+    return FindGrasp(record) &&
+           record.robust.gripped >= parameters_.transfer.sure_grip;
   }
 
   // Of each part those first whose starts promise most, the parts in turn.
@@ -226,7 +274,8 @@ class Transferrer {
   }
 
   // One source grasp through all stages; touches its own record only.
-  void TransferOne(TransferRecord& record, const Wanted& wanted) const {
+  void TransferOne(TransferRecord& record, int climb_samples,
+                   const Wanted& wanted) const {
     if (!wanted()) return;
     const uint64_t p = record.part;
     const uint64_t s = record.source_grasp;
@@ -261,7 +310,7 @@ class Transferrer {
     ReplanResult on_part =
         Replan(hand_, task, *pair.solid_N, parameters_,
                DeriveSeed(request_.seed, {kReplan, p, s}),
-               {.climb = !request_.assemble,
+               {.climb_samples = request_.assemble ? 0 : climb_samples,
                 .grip = !request_.assemble,
                 .epsilon_to_beat = record.open_close_epsilon_part,
                 .wanted = wanted});
@@ -285,7 +334,8 @@ class Transferrer {
       ReplanResult on_whole =
           Assemble(hand_, task, *on_part.grasp, *whole_N_, parameters_,
                    DeriveSeed(request_.seed, {kAssemble, p, s}),
-                   {.epsilon_to_beat = record.open_close_epsilon_whole,
+                   {.climb_samples = climb_samples,
+                    .epsilon_to_beat = record.open_close_epsilon_whole,
                     .wanted = wanted});
       record.assembly_seconds = ThreadSeconds() - replanned;
       record.assembly = on_whole.outcome;
@@ -352,6 +402,8 @@ class Transferrer {
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
   const PartSurfaces parts_N_;
+  int found_{0};       // Sure grasps so far.
+  double share_{0.1};  // Of the work, when the next ones are tried.
 };
 
 }  // namespace

@@ -38,24 +38,26 @@ PerturbedCopies::PerturbedCopies(const HandShape& hand, const Solid& solid,
   }
 }
 
-PerturbedCopies::Fate PerturbedCopies::Try(
-    const Copy& copy, const Grasp& grasp,
-    const RobustnessOptions& options) const {
-  RigidTransform X_OH = grasp.configuration.X_OH;
-  X_OH.translation += copy.shift;
-  X_OH.rotation = X_OH.rotation * copy.turn;
+RigidTransform PerturbedCopies::Disturb(const Copy& copy,
+                                        const RigidTransform& X_OH) const {
+  return {X_OH.rotation * copy.turn, X_OH.translation + copy.shift};
+}
+
+bool PerturbedCopies::IsStable(const Copy& copy, const Grasp& grasp) const {
   Parameters perturbed = parameters_;
   perturbed.contact.friction *= copy.friction_factor;
-  const EvaluatedGrasp closed = CloseAndJudge(
-      hand_, X_OH, grasp.q_pregrasp, solid_, perturbed, Precision::kEstimated);
-  if (!closed.ok()) return Fate::kUnstable;
-  if (!options.gripped) return Fate::kStable;
+  return CloseAndJudge(hand_, Disturb(copy, grasp.configuration.X_OH),
+                       grasp.q_pregrasp, solid_, perturbed,
+                       Precision::kEstimated)
+      .ok();
+}
+
+bool PerturbedCopies::IsHeld(const Copy& copy, const Grasp& grasp,
+                             Push push) const {
   return simulation_
-                 .Run(X_OH, grasp.q_pregrasp, perturbed.contact.friction,
-                      options.pushed ? copy.push : Push::kNone)
-                 .held
-             ? Fate::kGripped
-             : Fate::kStable;
+      .Run(Disturb(copy, grasp.configuration.X_OH), grasp.q_pregrasp,
+           parameters_.contact.friction * copy.friction_factor, push)
+      .held;
 }
 
 Robustness PerturbedCopies::Judge(const Grasp& grasp,
@@ -67,9 +69,13 @@ Robustness PerturbedCopies::Judge(const Grasp& grasp,
   for (int i = 0; i < count; ++i) {
     if (gripped + count - i < least * count) break;
     if (least > 0.0 && gripped == 0 && i == kHopeless) break;
-    const Fate fate = Try(copies_[static_cast<size_t>(i)], grasp, options);
-    if (fate != Fate::kUnstable) ++stable;
-    if (fate == Fate::kGripped) ++gripped;
+    const Copy& copy = copies_[static_cast<size_t>(i)];
+    if (!IsStable(copy, grasp)) continue;
+    ++stable;
+    if (options.gripped &&
+        IsHeld(copy, grasp, options.pushed ? copy.push : Push::kNone)) {
+      ++gripped;
+    }
   }
   return {static_cast<double>(stable) / count,
           static_cast<double>(gripped) / count};
@@ -90,7 +96,8 @@ double PerturbedCopies::CalcGripped(const Grasp& grasp, double least) {
     if (gripped + count - i < least * count) break;
     if (!hard_first && gripped == 0 && i == kHopeless) break;
     Copy& copy = *order[static_cast<size_t>(i)];
-    if (Try(copy, grasp, {}) == Fate::kGripped) {
+    // What is not held need not be stable.
+    if (IsHeld(copy, grasp, copy.push) && IsStable(copy, grasp)) {
       ++gripped;
     } else {
       ++copy.times_lost;

@@ -49,10 +49,9 @@ class PerturbedCopies {
     Push push{Push::kNone};
     int times_lost{0};
   };
-  enum class Fate { kUnstable, kStable, kGripped };
-
-  Fate Try(const Copy& copy, const Grasp& grasp,
-           const RobustnessOptions& options) const;
+  RigidTransform Disturb(const Copy& copy, const RigidTransform& X_OH) const;
+  bool IsStable(const Copy& copy, const Grasp& grasp) const;
+  bool IsHeld(const Copy& copy, const Grasp& grasp, Push push) const;
 
   const HandShape& hand_;
   const Solid& solid_;

@@ -116,7 +116,7 @@ class Replanner {
       Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
     } while (!best_ && ++cycle < replan_.cycles && IsWanted());
     if (!best_) return {furthest_, std::nullopt};
-    if (options_.climb && UsesGrip()) Climb();
+    if (UsesGrip()) Climb();
     return {TransferOutcome::kSucceeded, std::move(best_)};
   }
 
@@ -210,7 +210,7 @@ class Replanner {
   // long as eps grows.
   void Climb() {
     int since_gain = 0;
-    for (int i = 0; i < replan_.climb_samples && IsWanted(); ++i) {
+    for (int i = 0; i < options_.climb_samples && IsWanted(); ++i) {
       if (merit_.sure >= replan_.enough_grip &&
           since_gain >= replan_.patience) {
         break;

@@ -47,8 +47,9 @@ RigidTransform FitWrist(const HandModel& hand, const TransferTask& task);
 
 /** What replanning is to reach. */
 struct ReplanOptions {
-  bool climb{true};  ///< Not only a grasp that counts but the best around it.
-  bool grip{true};   ///< Whether disturbed copies choose; else ε does.
+  /** Tries, at most, for the best grasp around the first one that counts. */
+  int climb_samples{0};
+  bool grip{true};  ///< Whether disturbed copies choose; else ε does.
   double epsilon_to_beat{0.0};  ///< What open-close reaches.
   /** Whether to go on; may be empty. Once it says no, the result is of no
    account. */
@@ -61,8 +62,8 @@ struct ReplanOptions {
  TimeFingers(). Of the stable, reachable, near-enough grasps the answer is the
  one with the largest ε, or, with grip_copies, the one that the most perturbed
  copies hold, up to enough_grip, where an ε that does not beat open-close costs
- behind_cost of them; then ε. When that is wanted, climb_samples more are then
- tried around the best. Deterministic for a seed. @paper{Sec. V-B} */
+ behind_cost of them; then ε. With grip_copies up to options.climb_samples more
+ are then tried around the best. Deterministic for a seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed, const ReplanOptions& options = {});

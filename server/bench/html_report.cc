@@ -35,17 +35,6 @@ th { background: #f4f4f4; vertical-align: bottom; }
 .p { color: #777; }
 .low { color: #b00; }
 .grid { display: flex; flex-wrap: wrap; gap: 12px; }
-svg { background: #fff; }
-svg text { font: 10px sans-serif; fill: #444; }
-svg .t { font-weight: bold; }
-svg .x { text-anchor: middle; }
-svg .y { text-anchor: end; }
-svg .a { fill: none; stroke: #444; }
-svg .g { stroke: #eee; }
-svg .d { stroke: #d62728; }
-</style>
-</head>
-<body>
 )";
 
 using Cells = std::vector<std::string>;
@@ -394,7 +383,8 @@ std::string MakeAblationTable(const Json& report) {
 }  // namespace
 
 std::string MakeHtmlReport(const Json& report) {
-  std::string html = kHead;
+  std::string html =
+      std::string(kHead) + kPlotStyle + "</style>\n</head>\n<body>\n";
   html += "<h1>The paper's evaluation</h1>\n";
   html += fmt::format(
       "<p>graspdb {}, {}; seed {}, {} source grasps per part{}; {} cores. "

@@ -110,11 +110,8 @@ class PaperBench {
   Result<Json> RunVariant(const BenchVariant& variant,
                           const std::vector<BenchItem>& items, bool physical,
                           ExecutionContext& context) {
-    // A transfer takes the grasp space that was learned last: a file for each
-    // way to learn, so that no variant takes another's.
-    const std::string learning_id =
-        MakeContentId(ParametersToJson(SelectForLearning(variant.parameters)));
-    GRASPDB_TRY(service, open_(fs::path(order_.out) / (learning_id + ".db")));
+    GRASPDB_TRY(service,
+                open_(MakeLearningPath(order_.out, variant.parameters)));
     PopulateOrder populate;
     populate.folder = order_.data;
     populate.categories = order_.categories;
@@ -358,6 +355,13 @@ class PaperBench {
 };
 
 }  // namespace
+
+std::string MakeLearningPath(const std::string& out,
+                             const Parameters& parameters) {
+  const std::string id =
+      MakeContentId(ParametersToJson(SelectForLearning(parameters)));
+  return fs::path(out) / (id + ".db");
+}
 
 Result<Json> RunPaperBench(const PaperBenchOrder& order,
                            const OpenService& open, ExecutionContext& context) {

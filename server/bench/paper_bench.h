@@ -41,6 +41,12 @@ struct PaperBenchOrder {
 using OpenService =
     std::function<Result<std::unique_ptr<Service>>(const std::string& db)>;
 
+/** The database in `out` for all that is learned with these parameters. A
+ transfer takes the grasp space that was learned last: a file for each way to
+ learn, so that no bench takes another's. */
+std::string MakeLearningPath(const std::string& out,
+                             const Parameters& parameters);
+
 /** Learns the examples, transfers to every novel object, assembles, compares
  and lets a simulator judge: all tables and figures of the paper, and more. What
  was done before with the same order is read from `out`, so that it may be

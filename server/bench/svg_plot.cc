@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,34 +29,86 @@ double CalcTickStep(double range) {
   return 10.0 * power;
 }
 
+// Where values lie along one side of the plot.
+class Axis {
+ public:
+  Axis() = default;
+
+  static Axis MakeLinear(double least, double most) {
+    Axis axis;
+    axis.least_ = least;
+    axis.most_ = most > least ? most : least + 1.0;
+    const double step = CalcTickStep(axis.most_ - least);
+    for (int i = 0; least + i * step <= axis.most_ * (1.0 + 1e-9); ++i) {
+      axis.ticks_.push_back(least + i * step);
+    }
+    return axis;
+  }
+
+  // By whole powers of ten around positive values.
+  static Axis MakeLogarithmic(double least, double most) {
+    Axis axis;
+    axis.logarithmic_ = true;
+    const double low = std::floor(std::log10(least) + 1e-9);
+    const double high = std::max(low + 1.0, std::ceil(std::log10(most) - 1e-9));
+    for (double power = low; power <= high; power += 1.0) {
+      axis.ticks_.push_back(std::pow(10.0, power));
+    }
+    axis.least_ = axis.ticks_.front();
+    axis.most_ = axis.ticks_.back();
+    return axis;
+  }
+
+  // 0 at its beginning, 1 at its end.
+  double CalcShare(double value) const {
+    const double share = logarithmic_
+                             ? std::log(std::max(value, least_) / least_) /
+                                   std::log(most_ / least_)
+                             : (value - least_) / (most_ - least_);
+    return std::clamp(share, 0.0, 1.0);
+  }
+
+  double most() const { return most_; }
+  const std::vector<double>& ticks() const { return ticks_; }
+
+ private:
+  bool logarithmic_{false};
+  double least_{0.0};
+  double most_{1.0};
+  std::vector<double> ticks_;
+};
+
 class Plot {
  public:
   Plot(const std::vector<PlotSeries>& series, const PlotOptions& options)
       : series_(series), options_(options) {
-    x_max_ = options.x_max;
-    y_max_ = options.y_max;
-    for (const PlotSeries& one : series) {
-      for (size_t i = 0; i < one.x.size(); ++i) {
-        if (options.x_max == 0.0) x_max_ = std::max(x_max_, one.x[i]);
-        if (options.y_max == 0.0) y_max_ = std::max(y_max_, one.y[i]);
-      }
+    const auto [x_least, x_most] = FindRange(&PlotSeries::x);
+    const auto [y_least, y_most] = FindRange(&PlotSeries::y);
+    if (options.logarithmic && x_least > 0.0 && y_least > 0.0) {
+      x_ = Axis::MakeLogarithmic(x_least, x_most);
+      y_ = Axis::MakeLogarithmic(y_least, y_most);
+      return;
     }
-    if (options.diagonal) x_max_ = y_max_ = std::max(x_max_, y_max_);
-    if (x_max_ <= 0.0) x_max_ = 1.0;
-    if (y_max_ <= options.y_min) y_max_ = options.y_min + 1.0;
+    double x_max = options.x_max == 0.0 ? x_most : options.x_max;
+    double y_max = options.y_max == 0.0 ? y_most : options.y_max;
+    if (options.diagonal) x_max = y_max = std::max(x_max, y_max);
+    x_ = Axis::MakeLinear(0.0, x_max);
+    y_ = Axis::MakeLinear(options.y_min, y_max);
   }
 
   std::string Draw() const {
     std::string svg = fmt::format(
-        "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-        "role=\"img\"><title>{2}</title>"
+        "<svg {4}viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+        "role=\"img\">{5}<title>{2}</title>"
         "<text x=\"{3}\" y=\"13\" class=\"t\">{2}</text>",
-        kWidth, kHeight, EscapeMarkup(options_.title), kLeft);
+        kWidth, kHeight, EscapeMarkup(options_.title), kLeft,
+        options_.alone ? "xmlns=\"http://www.w3.org/2000/svg\" " : "",
+        options_.alone ? fmt::format("<style>{}</style>", kPlotStyle) : "");
     svg += DrawAxes();
     if (options_.diagonal) {
       svg += fmt::format(
           "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" class=\"d\"/>", X(0.0),
-          Y(0.0), X(x_max_), Y(y_max_));
+          Y(0.0), X(x_.most()), Y(y_.most()));
     }
     for (const PlotSeries& one : series_) svg += DrawSeries(one);
     if (series_.size() > 1) svg += DrawLegend();
@@ -63,28 +116,37 @@ class Plot {
   }
 
  private:
+  // Of all points; from 0 to 0 when there are none.
+  std::pair<double, double> FindRange(
+      std::vector<double> PlotSeries::*values) const {
+    double least = 1e300;
+    double most = 0.0;
+    for (const PlotSeries& one : series_) {
+      for (const double value : one.*values) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+    return {std::min(least, most), most};
+  }
+
   double X(double x) const {
-    return kLeft + (kWidth - kLeft - kRight) * std::clamp(x / x_max_, 0.0, 1.0);
+    return kLeft + (kWidth - kLeft - kRight) * x_.CalcShare(x);
   }
   double Y(double y) const {
-    const double share = (y - options_.y_min) / (y_max_ - options_.y_min);
-    return kHeight - kBottom -
-           (kHeight - kTop - kBottom) * std::clamp(share, 0.0, 1.0);
+    return kHeight - kBottom - (kHeight - kTop - kBottom) * y_.CalcShare(y);
   }
 
   std::string DrawAxes() const {
     const double floor = kHeight - kBottom;
     std::string svg = fmt::format("<path d=\"M{} {}V{}H{}\" class=\"a\"/>",
                                   kLeft, kTop, floor, kWidth - kRight);
-    const double x_step = CalcTickStep(x_max_);
-    for (int i = 0; i * x_step <= x_max_ * (1.0 + 1e-9); ++i) {
+    for (const double x : x_.ticks()) {
       svg +=
           fmt::format("<text x=\"{:.1f}\" y=\"{}\" class=\"x\">{:.4g}</text>",
-                      X(i * x_step), floor + 12.0, i * x_step);
+                      X(x), floor + 12.0, x);
     }
-    const double y_step = CalcTickStep(y_max_ - options_.y_min);
-    for (int i = 0; options_.y_min + i * y_step <= y_max_ * (1.0 + 1e-9); ++i) {
-      const double y = options_.y_min + i * y_step;
+    for (const double y : y_.ticks()) {
       svg += fmt::format(
           "<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" class=\"g\"/>"
           "<text x=\"{}\" y=\"{:.1f}\" class=\"y\">{:.4g}</text>",
@@ -134,11 +196,21 @@ class Plot {
 
   const std::vector<PlotSeries>& series_;
   const PlotOptions& options_;
-  double x_max_{0.0};
-  double y_max_{0.0};
+  Axis x_;
+  Axis y_;
 };
 
 }  // namespace
+
+const char kPlotStyle[] = R"(svg { background: #fff; }
+svg text { font: 10px sans-serif; fill: #444; }
+svg .t { font-weight: bold; }
+svg .x { text-anchor: middle; }
+svg .y { text-anchor: end; }
+svg .a { fill: none; stroke: #444; }
+svg .g { stroke: #eee; }
+svg .d { stroke: #d62728; }
+)";
 
 std::string MakeSvgPlot(const std::vector<PlotSeries>& series,
                         const PlotOptions& options) {

@@ -5,23 +5,27 @@
 #include <fmt/format.h>
 
 #include "server/codec/parameters_json.h"
-#include "server/decode/decode_client.h"
 #include "server/files.h"
 
 namespace graspdb {
 
+DecoderOptions MakeDecoderOptions(const Options& options) {
+  DecoderOptions decoder;
+  decoder.helper = options.decoder;
+  decoder.allow_unsandboxed = options.allow_unsandboxed;
+  return decoder;
+}
+
 Result<std::unique_ptr<Service>> Program::MakeService(
     const std::string& db, Store::OpenMode mode) const {
   GRASPDB_TRY(store, Store::Open(db, mode));
-  DecoderOptions decoder;
-  decoder.helper = options_.decoder;
-  decoder.allow_unsandboxed = options_.allow_unsandboxed;
   ServiceOptions service;
   service.threads = options_.threads;
   service.max_queued_jobs = options_.max_queued_jobs;
   service.max_backups = options_.max_backups;
-  return std::make_unique<Service>(std::move(store),
-                                   std::make_unique<Decoder>(decoder), service);
+  return std::make_unique<Service>(
+      std::move(store), std::make_unique<Decoder>(MakeDecoderOptions(options_)),
+      service);
 }
 
 Result<Service*> Program::OpenService(Store::OpenMode mode) {

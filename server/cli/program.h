@@ -7,6 +7,7 @@
 #include "engine/base/result.h"
 #include "engine/parameters/parameters.h"
 #include "server/cli/backend.h"
+#include "server/decode/decode_client.h"
 #include "server/jobs/service.h"
 
 namespace graspdb {
@@ -28,6 +29,8 @@ struct Options {
   int max_backups{ServiceOptions().max_backups};
   bool json{false};
 };
+
+DecoderOptions MakeDecoderOptions(const Options& options);
 
 /** The program while it runs one subcommand. */
 class Program {

@@ -263,9 +263,13 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
   Add(counts);
   GRASPDB_TRY(answer, std::move(result));
   const MassProperties mass = CalcMassProperties(answer.mesh_O);
-  return DecodedMesh{std::move(answer.mesh_O),  std::move(answer.work_O),
-                     std::move(answer.repairs), mass,
-                     std::move(answer.format),  std::move(answer.cloud)};
+  return DecodedMesh{std::move(answer.mesh_O),
+                     std::move(answer.work_O),
+                     std::move(answer.repairs),
+                     mass,
+                     std::move(answer.format),
+                     std::move(answer.cloud),
+                     answer.seconds};
 }
 
 Result<std::string> Decoder::Check() const {

@@ -29,6 +29,7 @@ struct DecodedMesh {
   MassProperties mass;               ///< Of mesh_O.
   std::string format;                ///< "OBJ", "glTF", "PCD", ….
   std::optional<DecodedCloud> cloud{};  ///< Unset for a mesh.
+  DecodeSeconds seconds{};
 };
 
 /** What became of the mesh files since the program started. */

@@ -8,6 +8,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/prctl.h>
@@ -20,6 +21,7 @@
 #include "engine/admission/mesh_repair.h"
 #include "engine/admission/point_cloud_reader.h"
 #include "engine/admission/surface_reconstruction.h"
+#include "engine/base/thread_clock.h"
 #include "engine/geometry/seen_surface.h"
 #include "server/decode/decode_protocol.h"
 #include "server/decode/sandbox.h"
@@ -60,17 +62,39 @@ double CalcSeenShare(const TriangleMesh& mesh, const SeenSurface& seen) {
   return std::min(1.0, area / mesh.total_area());
 }
 
+// What each of three steps took.
+class StepClock {
+ public:
+  void EndRead() { seconds_.read = Lap(); }
+  void EndRepair() { seconds_.repair = Lap(); }
+  void EndDecimate() { seconds_.decimate = Lap(); }
+  const DecodeSeconds& seconds() const { return seconds_; }
+
+ private:
+  double Lap() {
+    const double now = ThreadSeconds();
+    return now - std::exchange(last_, now);
+  }
+
+  double last_{ThreadSeconds()};
+  DecodeSeconds seconds_;
+};
+
 Result<DecodeAnswer> AdmitCloud(const DecodeRequest& request,
                                 std::span<const uint8_t> bytes,
                                 MeshFormat format) {
+  StepClock clock;
   const double metres_per_unit = request.metres_per_unit.value_or(1.0);
   GRASPDB_TRY(points_O,
               ReadPointCloud(bytes, format, metres_per_unit, request.limits));
   GRASPDB_TRY_VOID(
       CheckGraspableSize(TriangleMesh(points_O, {}), metres_per_unit));
   GRASPDB_TRY(surface, ReconstructSurface(points_O));
+  clock.EndRead();
   GRASPDB_TRY(repaired, RepairMesh(surface.mesh_O));
+  clock.EndRepair();
   GRASPDB_TRY(work_O, Decimate(repaired.mesh, request.work_triangles));
+  clock.EndDecimate();
   DecodedCloud cloud{surface.report, 0.0, std::move(surface.points_O)};
   cloud.seen_share = CalcSeenShare(
       repaired.mesh, SeenSurface(cloud.points_O, CalcSeenReach(cloud.report)));
@@ -81,11 +105,13 @@ Result<DecodeAnswer> AdmitCloud(const DecodeRequest& request,
                       std::move(steps),
                       GetName(format),
                       "",
-                      std::move(cloud)};
+                      std::move(cloud),
+                      clock.seconds()};
 }
 
 Result<DecodeAnswer> Admit(const DecodeRequest& request,
                            std::span<const uint8_t> bytes) {
+  StepClock clock;
   MeshFormat format{};
   if (request.format) {
     format = *request.format;
@@ -100,14 +126,18 @@ Result<DecodeAnswer> Admit(const DecodeRequest& request,
               ReadMesh(bytes, format, request.metres_per_unit, request.limits));
   GRASPDB_TRY_VOID(
       CheckGraspableSize(soup_O, request.metres_per_unit.value_or(1.0)));
+  clock.EndRead();
   GRASPDB_TRY(repaired, RepairMesh(soup_O));
+  clock.EndRepair();
   GRASPDB_TRY(work_O, Decimate(repaired.mesh, request.work_triangles));
+  clock.EndDecimate();
   return DecodeAnswer{std::move(repaired.mesh),
                       std::move(work_O),
                       std::move(repaired.repairs),
                       GetName(format),
                       "",
-                      std::nullopt};
+                      std::nullopt,
+                      clock.seconds()};
 }
 
 Result<DecodeAnswer> AnswerRequest(const std::string& confinement) try {

@@ -12,7 +12,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr uint32_t kRequestMark = 0x31524447;  // "GDR1"
-constexpr uint32_t kAnswerMark = 0x32414447;   // "GDA2"
+constexpr uint32_t kAnswerMark = 0x33414447;   // "GDA3"
 constexpr uint8_t kNoFormat = 255;
 
 class Writer {
@@ -207,6 +207,9 @@ std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
     writer.WritePoints(answer->cloud->points_O);
   }
   writer.WriteText(answer->confinement);
+  writer.Write(answer->seconds.read);
+  writer.Write(answer->seconds.repair);
+  writer.Write(answer->seconds.decimate);
   return writer.TakeBytes();
 }
 
@@ -234,6 +237,9 @@ std::optional<Result<DecodeAnswer>> ParseAnswer(
   answer.format = reader.ReadText();
   if (reader.Read<uint8_t>() == 1) answer.cloud = reader.ReadCloud();
   answer.confinement = reader.ReadText();
+  answer.seconds.read = reader.ReadFinite();
+  answer.seconds.repair = reader.ReadFinite();
+  answer.seconds.decimate = reader.ReadFinite();
   if (!reader.ReadEverything()) return std::nullopt;
   return answer;
 }

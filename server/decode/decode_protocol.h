@@ -35,6 +35,13 @@ struct DecodedCloud {
   std::vector<Eigen::Vector3d> points_O;  ///< Those that the mesh goes by, m.
 };
 
+/** What decoding took of one core, s: for reports. */
+struct DecodeSeconds {
+  double read{0.0};      ///< The file; of a cloud, its surface, too.
+  double repair{0.0};    ///< Until it was a closed solid.
+  double decimate{0.0};  ///< To the working mesh.
+};
+
 /** What the helper made of it. */
 struct DecodeAnswer {
   TriangleMesh mesh_O;  ///< Full resolution.
@@ -43,6 +50,7 @@ struct DecodeAnswer {
   std::string format;                   ///< As GetName() has it.
   std::string confinement;              ///< How the helper was confined.
   std::optional<DecodedCloud> cloud{};  ///< Unset for a mesh.
+  DecodeSeconds seconds{};
 };
 
 /** The bytes that go before the mesh file's bytes. */

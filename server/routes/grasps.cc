@@ -136,7 +136,7 @@ Result<void> CheckNames(const Store& store, const GraspSearch& search) {
   return {};
 }
 
-Result<HttpResponse> ListGrasps(const Service& service,
+Result<HttpResponse> ListGrasps(const Service& service, GraspTexts& texts,
                                 const HttpRequest& request) {
   QueryReader query(request.query);
   GRASPDB_TRY(search, ReadSearch(query));
@@ -148,7 +148,7 @@ Result<HttpResponse> ListGrasps(const Service& service,
   if (format == GraspFormat::kJson) {
     std::vector<std::string> items;
     for (const auto& [grasp, hand] : pairs) {
-      items.push_back(ToJson(*grasp, *hand));
+      items.push_back(*texts.Get(*grasp, *hand));
     }
     return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
   }
@@ -302,10 +302,11 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
 
 void AddGraspRoutes(Router& router, Service& service,
                     const RouteOptions& options) {
-  router.Add({"GET", "/v1/grasps", BodyKind::kNone,
-              [&service](const HttpRequest& request) {
-                return ListGrasps(service, request);
-              }});
+  router.Add(
+      {"GET", "/v1/grasps", BodyKind::kNone,
+       [&service, texts = options.grasp_texts](const HttpRequest& request) {
+         return ListGrasps(service, *texts, request);
+       }});
   router.Add({"POST", "/v1/grasps", BodyKind::kUpload,
               [&service, options](const HttpRequest& request) {
                 return PostGrasps(service, options, request);

@@ -8,7 +8,6 @@
 
 #include "engine/grasp_engine.h"
 #include "server/decode/decode_client.h"
-#include "server/http/request_metrics.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"
 
@@ -91,8 +90,24 @@ Result<std::string> WriteStore(const Store& store) {
   return text;
 }
 
+std::string WriteCache(const CacheCounts& counts) {
+  return WriteMetricHead("graspdb_cache_lookups_total", "counter",
+                         "Whether a grasp's text was remembered.") +
+         fmt::format(
+             "graspdb_cache_lookups_total{{cache=\"grasp_texts\",end=\"hit\"}} "
+             "{}\n"
+             "graspdb_cache_lookups_total{{cache=\"grasp_texts\",end=\"miss\"}}"
+             " "
+             "{}\n",
+             counts.hits, counts.misses) +
+         WriteMetricHead("graspdb_cache_bytes", "gauge",
+                         "What the remembered texts take.") +
+         fmt::format("graspdb_cache_bytes{{cache=\"grasp_texts\"}} {}\n",
+                     counts.bytes);
+}
+
 Result<HttpResponse> GetMetrics(const Service& service,
-                                const RequestMetrics* requests,
+                                const RouteOptions& options,
                                 const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(store, WriteStore(service.store()));
@@ -101,8 +116,9 @@ Result<HttpResponse> GetMetrics(const Service& service,
   response.body =
       WriteMetricHead("graspdb_build_info", "gauge", "What runs here.") +
       fmt::format("graspdb_build_info{{version=\"{}\"}} 1\n", EngineVersion()) +
-      (requests != nullptr ? requests->Write() : "") + store +
-      WriteDecoder(service.CountDecoded()) + WriteProcess();
+      (options.metrics ? options.metrics->Write() : "") + store +
+      WriteDecoder(service.CountDecoded()) +
+      WriteCache(options.grasp_texts->counts()) + WriteProcess();
   return response;
 }
 
@@ -110,11 +126,10 @@ Result<HttpResponse> GetMetrics(const Service& service,
 
 void AddMetricsRoutes(Router& router, Service& service,
                       const RouteOptions& options) {
-  router.Add(
-      {"GET", "/metrics", BodyKind::kNone,
-       [&service, requests = options.metrics](const HttpRequest& request) {
-         return GetMetrics(service, requests.get(), request);
-       }});
+  router.Add({"GET", "/metrics", BodyKind::kNone,
+              [&service, options](const HttpRequest& request) {
+                return GetMetrics(service, options, request);
+              }});
 }
 
 }  // namespace graspdb

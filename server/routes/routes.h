@@ -6,6 +6,7 @@
 #include "server/http/request_metrics.h"
 #include "server/http/router.h"
 #include "server/jobs/service.h"
+#include "server/routes/grasp_texts.h"
 
 /** @file
  The operations of schema/openapi.yaml, one .cc per noun: decode the request,
@@ -20,6 +21,7 @@ struct RouteOptions {
   int max_event_streams{32};
   /** What GET /metrics tells of requests; may be null. */
   std::shared_ptr<RequestMetrics> metrics;
+  std::shared_ptr<GraspTexts> grasp_texts{std::make_shared<GraspTexts>()};
 };
 
 void AddBackupRoutes(Router& router, Service& service);

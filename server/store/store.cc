@@ -80,8 +80,12 @@ std::unique_ptr<Database> Store::Impl::TakeReader() {
 }
 
 void Store::Impl::GiveBack(Database* database) {
+  std::unique_ptr<Database> reader(database);
   const std::lock_guard lock(readers_mutex);
-  idle_readers.emplace_back(database);
+  // The many that one burst needed take memory for ever.
+  if (idle_readers.size() < kMostIdleReaders) {
+    idle_readers.push_back(std::move(reader));
+  }
 }
 
 Store::Store(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

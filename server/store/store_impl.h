@@ -54,6 +54,8 @@ struct Store::Impl {
   }
 
  private:
+  static constexpr size_t kMostIdleReaders = 16;
+
   std::unique_ptr<Database> TakeReader();
   void GiveBack(Database* database);
 };

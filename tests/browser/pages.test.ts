@@ -104,8 +104,35 @@ describe('a grasp', () => {
     const visitor = await enter();
     const { page } = visitor;
     await visitor.visit(`${GRASPS}&show=all`);
-    await page.getByText(/\d+ grasps$/).first().waitFor();
+    await page.getByText(/\d+ grasps; click one/).waitFor();
     await visitor.picture('all');
+    // Somewhere on the picture a skeleton that is not the chosen one is hit.
+    const first = await chosen(page).getAttribute('id');
+    const canvas = page.locator('.viewport canvas');
+    const { width = 0, height = 0 } = (await canvas.boundingBox()) ?? {};
+    for (let y = 0.1 * height; y < 0.9 * height; y += 12) {
+      for (let x = 0.2 * width; x < 0.8 * width; x += 12) {
+        await canvas.click({ position: { x, y } });
+        if ((await chosen(page).getAttribute('id')) !== first) return;
+      }
+    }
+    expect.unreachable('no click chose another grasp');
+  });
+
+  it('is followed by more when the first page of them is not all', async () => {
+    const visitor = await enter();
+    const { page } = visitor;
+    const { items } = await queryGrasps(url, 'category=mug&stage=assembly&sort=epsilon');
+    expect(items.length).toBeGreaterThan(3);
+    // The server's own pages, made short.
+    await page.route('**/v1/grasps?*', (route) =>
+      route.continue({ url: route.request().url().replace('limit=200', 'limit=2') }));
+    await visitor.visit(GRASPS);
+    expect(await page.locator('li[role=option]').count()).toBe(2);
+    await page.getByRole('button', { name: 'More' }).click();
+    await option(page, 3).waitFor();
+    const listed = await page.locator('li[role=option]').evaluateAll((all) => all.map(({ id }) => id));
+    expect(listed).toEqual(items.slice(0, 4).map(({ id }) => `grasp-${id}`));
   });
 
   it('comes back from its link, filters and all', async () => {
@@ -165,6 +192,20 @@ describe('an upload', () => {
     await page.getByText(/^Succeeded: [1-9]/).waitFor({ timeout: JOB_LIMIT });
   });
 
+  it('is given up when it is cancelled', async () => {
+    const visitor = await enter();
+    const { page } = visitor;
+    await visitor.visit('/?view=upload');
+    await page.locator('input[type=file]').setInputFiles({
+      name: 'bowl.obj', mimeType: 'model/obj', buffer: readMug('bowl.obj'),
+    });
+    await page.getByLabel('Category').selectOption('mug');
+    await page.getByRole('button', { name: 'Find grasps' }).click();
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    await page.getByText(/^Cancelled/).waitFor();
+    expect(await page.getByRole('button', { name: 'Cancel' }).count()).toBe(0);
+  });
+
   it('may be dropped, and in the wrong unit is refused with a hint', async () => {
     const visitor = await enter({ expectedStatus: 422 });
     const { page } = visitor;
@@ -219,6 +260,27 @@ describe('an object', () => {
     await page.getByLabel('Label of the part handle').waitFor();
     await visitor.settle();
     expect(await labels.count()).toBe(2);
+  });
+
+  it('that grasps depend on keeps its parts unless they may go', async () => {
+    const visitor = await enter({ expectedStatus: 409 });
+    const { page } = visitor;
+    const cone = (await upload(url, 'cone.obj', 'category=mug')).id;
+    await (await fetch(`${url}/v1/grasps?object=${cone}&sources=2&count=1`, {
+      method: 'POST', headers: { Prefer: 'wait=600' },
+    })).arrayBuffer();
+    const count = async () => (await queryGrasps(url, `object=${cone}`)).items.length;
+    const before = await count();
+    expect(before).toBeGreaterThan(0);
+    await visitor.visit(`/?view=object&object=${cone}`);
+    await page.getByLabel('Label of the part body').selectOption('handle');
+    await page.getByRole('button', { name: 'Leave it' }).click();
+    await visitor.settle();
+    expect(await count()).toBe(before);
+    await page.getByLabel('Label of the part body').selectOption('handle');
+    await page.getByRole('button', { name: 'Change it and delete those grasps' }).click();
+    await page.waitForFunction(() => document.querySelectorAll('.parts select').length === 1);
+    expect(await count()).toBe(0);
   });
 });
 

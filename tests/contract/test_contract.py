@@ -81,6 +81,7 @@ def test_metrics_are_prometheus_text(contract):
     assert samples["process_resident_memory_bytes", None] > 1e6
     assert samples["graspdb_database_bytes", None] > 4096
     assert samples["graspdb_stored", 'what="hands"'] >= 1
+    assert samples["graspdb_cache_bytes", 'cache="grasp_texts"'] >= 0
 
 
 def test_the_contract_served_is_the_file(contract):
@@ -89,6 +90,20 @@ def test_the_contract_served_is_the_file(contract):
     served["info"].pop("version")
     expected["info"].pop("version")
     assert served == json.loads(json.dumps(expected))
+
+
+def test_grasps_are_written_once(contract, answer):
+    def count_hits():
+        text = contract.call("getMetrics", 200).decode()
+        return int(re.search(
+            r'graspdb_cache_lookups_total{cache="grasp_texts",end="hit"} (\d+)',
+            text)[1])
+
+    query = {"transfer": answer["transfer_id"], "stage": "assembly"}
+    first = contract.call("queryGrasps", 200, query=query)
+    hits = count_hits()
+    assert contract.call("queryGrasps", 200, query=query) == first
+    assert count_hits() == hits + len(first["items"])
 
 
 def test_every_parameter_lies_in_its_range(contract):

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "server/store/store.h"
+#include "tests/support/rounds.h"
 #include "tests/support/stored_records.h"
 #include "tests/support/temp_folder.h"
 
@@ -59,7 +60,7 @@ TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
   }
   Random random(1);
   int acknowledged = 0;
-  for (int round = 0; round < 25; ++round) {
+  for (int round = 0; round < CountRounds(25); ++round) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();
@@ -92,13 +93,14 @@ TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
     EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
   }
   EXPECT_GT(acknowledged, 25);
+  RecordProperty("acknowledged", acknowledged);
 }
 
 // At any moment the file is either absent or whole.
 TEST(KilledProcess, LeavesNoHalfMadeDatabase) {
   const TempFolder folder;
   Random random(2);
-  for (int round = 0; round < 25; ++round) {
+  for (int round = 0; round < CountRounds(25); ++round) {
     const std::string path = folder.File(std::to_string(round) + ".db");
     const pid_t child = fork();
     if (child == 0) {

@@ -4,23 +4,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/geometry/solid.h"
-#include "engine/hand/hand_shape.h"
-#include "engine/parameters/parameters.h"
-#include "engine/planning/grasp.h"
+#include "server/bench/speed/speed_scene.h"
 
 namespace graspdb::bench {
 
-/** What the micro-benchmarks work on: a mug, the Barrett hand, and postures of
- it about the mug, drawn at random once; the same in every run. */
-struct Scene {
-  HandShape hand;
-  Solid solid;
-  Parameters parameters;
-  std::vector<HandConfiguration> free;       ///< Open, near, no collision.
-  std::vector<HandConfiguration> colliding;  ///< Some link does.
-  std::vector<Grasp> grasps;                 ///< Stable ones, any number.
-};
+/** What the micro-benchmarks work on: a mug and the Barrett hand. */
+using Scene = SpeedScene;
 
 const Scene& GetScene();
 

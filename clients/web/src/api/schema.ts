@@ -2517,6 +2517,8 @@ export interface operations {
             };
         };
         readonly responses: {
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 413: components["responses"]["TooLarge"];
             readonly 501: components["responses"]["NotImplemented"];
         };
     };

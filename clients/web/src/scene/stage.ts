@@ -1,6 +1,6 @@
 import {
-  type Box3, DirectionalLight, HemisphereLight, type Object3D, PerspectiveCamera, Scene, Vector3,
-  WebGLRenderer,
+  type Box3, DirectionalLight, HemisphereLight, type Intersection, type Object3D, PerspectiveCamera, Raycaster, Scene,
+  Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -18,6 +18,8 @@ const FRAME_MARGIN = 1.08;
 const FIELD_OF_VIEW = 32; // Degrees, as three takes it: long enough a lens to compare lengths.
 /** Pixels beyond this per CSS pixel cost much and show little. */
 const MOST_PIXELS_RATIO = 2;
+/** A pointer that went farther than this between down and up dragged, CSS pixels. */
+const CLICK_SLOP = 4;
 
 /** Lights that look the same from every side: they go with the camera. */
 export function addLights(scene: Scene, camera: PerspectiveCamera): void {
@@ -125,6 +127,42 @@ export class Stage {
     const { x, y } = point.clone().project(this.camera);
     const { clientWidth, clientHeight } = this.container;
     return { x: ((1 + x) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+  }
+
+  /** The first of `among` that is not further than a few pixels from a point of
+   * the canvas, in CSS pixels from its upper left corner. */
+  pick(x: number, y: number, among: Object3D): Intersection | null {
+    const { clientWidth, clientHeight } = this.container;
+    const raycaster = new Raycaster();
+    for (const [dx, dy] of [[0, 0], [CLICK_SLOP, 0], [-CLICK_SLOP, 0], [0, CLICK_SLOP], [0, -CLICK_SLOP]] as const) {
+      raycaster.setFromCamera(
+        new Vector2((2 * (x + dx)) / clientWidth - 1, 1 - (2 * (y + dy)) / clientHeight),
+        this.camera,
+      );
+      const [first] = raycaster.intersectObject(among);
+      if (first) return first;
+    }
+    return null;
+  }
+
+  /** Calls the listener with where the canvas is clicked, in CSS pixels from its
+   * upper left corner; to drag is no click. Gives back how to end that. */
+  onClick(listener: (x: number, y: number) => void): () => void {
+    const canvas = this.renderer.domElement;
+    let down: { readonly x: number; readonly y: number } | null = null;
+    const press = ({ offsetX: x, offsetY: y }: PointerEvent): void => {
+      down = { x, y };
+    };
+    const release = ({ offsetX: x, offsetY: y }: PointerEvent): void => {
+      if (down && Math.hypot(x - down.x, y - down.y) <= CLICK_SLOP) listener(x, y);
+      down = null;
+    };
+    canvas.addEventListener('pointerdown', press);
+    canvas.addEventListener('pointerup', release);
+    return () => {
+      canvas.removeEventListener('pointerdown', press);
+      canvas.removeEventListener('pointerup', release);
+    };
   }
 
   /** Calls the listener after each frame; gives back how to end that. */

@@ -39,6 +39,18 @@ TEST_F(FieldOfABox, IsAccurateNextToTheSurface) {
   EXPECT_GT(near, 500);
 }
 
+TEST_F(FieldOfABox, WhereItIsBelowMinusItsErrorIsInside) {
+  Random random(54);
+  int inside = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector3d p = 0.08 * random.NextInUnitBall();
+    if (field_.Calc(p) >= -field_.max_error()) continue;
+    EXPECT_LT(index_.CalcSignedDistance(p), 0.0);
+    ++inside;
+  }
+  EXPECT_GT(inside, 500);
+}
+
 TEST_F(FieldOfABox, RisesOutOfTheNearestFaceByOneMetrePerMetre) {
   for (const double above : {-0.004, -0.0005, 0.0, 0.0007, 0.005}) {
     const Eigen::Vector3d top =

@@ -14,9 +14,19 @@ namespace {
 class TreeOfABox : public ::testing::Test {
  protected:
   // The distance to a point: Lipschitz with constant one.
-  static auto DistanceTo(const Eigen::Vector3d& q) {
-    return [q](const Eigen::Vector3d& p) { return (p - q).norm(); };
-  }
+  struct DistanceTo {
+    double operator()(const Eigen::Vector3d& p) const { return (p - q).norm(); }
+    Floats4 operator()(const Points4& p) const {
+      Floats4 distances;
+      for (int k = 0; k < 4; ++k) {
+        distances[k] = static_cast<float>(
+            (*this)(Eigen::Vector3d(p.x[k], p.y[k], p.z[k])));
+      }
+      return distances;
+    }
+    Eigen::Vector3d q;
+  };
+  static constexpr double kRounding = 1e-6;
 
   const TriangleMesh box_ = workshop::MakeBox({0.02, 0.03, 0.05}, 2);
   const SphereTree tree_{box_, 0.002};
@@ -42,10 +52,31 @@ TEST_F(TreeOfABox, TheBoundIsBelowAndTheEstimateNearTheTruth) {
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d q = 0.1 * random.NextInUnitBall();
     const double truth = index.FindClosest(q)->distance;
-    EXPECT_LE(tree_.CalcLowerBound(DistanceTo(q), -1.0), truth + 1e-12);
-    const double estimate = tree_.EstimateMinimum(DistanceTo(q), -1.0);
+    EXPECT_LE(tree_.CalcLowerBound(DistanceTo{q}), truth + kRounding);
+    const double estimate = tree_.EstimateMinimum(DistanceTo{q});
     EXPECT_LE(estimate, truth + 0.003);
-    EXPECT_GE(estimate, 0.5 * truth - 1e-12);
+    EXPECT_GE(estimate, 0.5 * truth - kRounding);
+  }
+}
+
+TEST_F(TreeOfABox, TellsNoMoreOfTheMinimumThanTheRangeAsksFor) {
+  Random random(64);
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector3d q = 0.1 * random.NextInUnitBall();
+    const auto distance = DistanceTo{q};
+    const double full = tree_.EstimateMinimum(distance);
+    const double most = random.NextUniform(0.0, 0.1);
+    const double capped = tree_.EstimateMinimum(distance, {.most = most});
+    EXPECT_LE(capped, most);
+    if (full < 0.5 * most) {
+      EXPECT_LT(capped, most);
+    }
+    const double bound = tree_.CalcLowerBound(distance, {.most = most});
+    EXPECT_LE(bound, most);
+    const double early = tree_.EstimateMinimum(distance, {.enough = most});
+    if (full < 0.5 * most) {
+      EXPECT_LT(early, most);
+    }
   }
 }
 
@@ -69,11 +100,11 @@ TEST_F(TreeOfABox, GapBoundOfTwoNeverExceedsTheTruth) {
 
 TEST_F(TreeOfABox, VisitsExactlyTheProbesWithinTheLimit) {
   const Eigen::Vector3d q(0.015, 0.0, 0.01);
-  const auto distance = DistanceTo(q);
+  const auto distance = DistanceTo{q};
   int visited = 0;
   const double others =
       tree_.VisitNear(distance, 0.012, [&](const Eigen::Vector3d& p, double d) {
-        EXPECT_EQ(d, distance(p));
+        EXPECT_NEAR(d, distance(p), kRounding);
         EXPECT_LE(d, 0.012);
         ++visited;
       });

@@ -59,7 +59,7 @@ TEST(HandShape, GapBoundNeverExceedsTheTrueGap) {
     const LinkShape& link = *hand.link(1 + i % 8);
     const Eigen::Vector3d p_L = X_OL.Inverse().translation;
     const double gap = link.index.CalcSignedDistance(p_L) - 0.03;
-    const double bound = CalcGapBound(link, X_OL, sphere, -1.0);
+    const double bound = CalcGapBound(link, X_OL, sphere);
     EXPECT_LE(bound, std::max(gap, 0.0) + 1e-4);
     // Tight near the surface: patches of 3 mm, a field error of about 1.5 mm.
     EXPECT_GT(bound, gap < 0.0 || gap > 0.01 ? -1.0 : gap - 0.009);

@@ -1,6 +1,7 @@
 #include "engine/grasp_engine.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -145,6 +146,29 @@ TEST_F(GripperPipeline, ATransferEndsWithEnoughSureGraspsOnAnyThreads) {
   for (size_t i = 0; i < results[0].records.size(); ++i) {
     EXPECT_EQ(results[0].records[i].source_grasp,
               results[1].records[i].source_grasp);
+    EXPECT_EQ(results[0].records[i].assembled, results[1].records[i].assembled);
+  }
+}
+
+TEST_F(GripperPipeline, WhatIsNotSureIsTriedOnceMoreWithMoreSamples) {
+  const GraspSpace space = LearnBox(2);
+  std::vector<TransferResult> results;
+  for (const int threads : {1, 2}) {
+    TransferRequest request = MakeRequest(box_E_, space, threads);
+    request.parameters.transfer.sure_grip = 1.1;  // Never.
+    request.parameters.replan.quick_climb_samples = 0;
+    request.parameters.replan.climb_samples = 5;
+    request.enough = 1;
+    std::map<int, int> told;
+    request.on_record = [&](int i, const TransferRecord&) { ++told[i]; };
+    results.push_back(Run(request));
+    const auto& records = results.back().records;
+    ASSERT_EQ(records.size(), static_cast<size_t>(kSources));
+    for (int i = 0; i < kSources; ++i) {
+      EXPECT_EQ(told[i], records[static_cast<size_t>(i)].assembled ? 2 : 1);
+    }
+  }
+  for (size_t i = 0; i < results[0].records.size(); ++i) {
     EXPECT_EQ(results[0].records[i].assembled, results[1].records[i].assembled);
   }
 }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/random.h"
-#include "tests/unit/engine/quality/qhull_oracle.h"
+#include "engine/reference/qhull_wrenches.h"
 
 namespace graspdb {
 namespace {

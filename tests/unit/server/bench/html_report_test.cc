@@ -82,6 +82,25 @@ TEST(SvgPlot, PutsPointsWhereTheAxesSay) {
   EXPECT_THAT(svg, HasSubstr("cx=\"304.0\" cy=\"206.0\""));
 }
 
+// Three decades share 260 and 186 pixels.
+TEST(SvgPlot, LogarithmicAxesGiveEachPowerOfTenAsMuchRoom) {
+  PlotSeries series{"", "red", {1.0, 100.0, 1000.0}, {0.01, 0.1, 10.0}};
+  PlotOptions options;
+  options.logarithmic = true;
+  const std::string svg = MakeSvgPlot({series}, options);
+  EXPECT_THAT(svg, HasSubstr("cx=\"44.0\" cy=\"206.0\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"217.3\" cy=\"144.0\""));
+  EXPECT_THAT(svg, HasSubstr("cx=\"304.0\" cy=\"20.0\""));
+}
+
+TEST(SvgPlot, AloneBringsItsStyleAlong) {
+  PlotOptions options;
+  options.alone = true;
+  EXPECT_THAT(MakeSvgPlot({}, options),
+              ::testing::AllOf(HasSubstr("xmlns="), HasSubstr("<style>")));
+  EXPECT_THAT(MakeSvgPlot({}, PlotOptions()), Not(HasSubstr("<style>")));
+}
+
 TEST(SvgPlot, WithADiagonalBothAxesReachAsFar) {
   PlotSeries series{"", "red", {1.0}, {4.0}};
   PlotOptions options;

@@ -20,10 +20,12 @@ interface GraspBenchProps {
   readonly others: readonly Grasp[];
   readonly show: GraspExtra | null;
   readonly onShow: (extra: GraspExtra | null) => void;
+  /** One of the others is chosen. */
+  readonly onChoose: (id: string) => void;
 }
 
 /** One grasp: picture, motion, comparison with where it comes from, numbers. */
-export function GraspBench({ grasp, recorded, others, show, onShow }: GraspBenchProps) {
+export function GraspBench({ grasp, recorded, others, show, onShow, onChoose }: GraspBenchProps) {
   const lineage = useResource(grasp && recorded ? grasp.id : null, () => {
     if (!grasp) throw new Error('There is no grasp to follow.');
     return loadLineage(grasp);
@@ -54,6 +56,7 @@ export function GraspBench({ grasp, recorded, others, show, onShow }: GraspBench
           friction={lineage.value?.friction ?? null}
           progress={progress}
           ghosts={show === 'all' ? others : null}
+          onChoose={onChoose}
           source={
             source && sourceModel.value && lineage.value?.contactMap
               ? { grasp: source, model: sourceModel.value, contactMap: lineage.value.contactMap }

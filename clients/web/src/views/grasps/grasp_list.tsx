@@ -4,14 +4,11 @@ import type { Grasp } from '../../api/types';
 import { formatNumber, formatShare } from '../../ui/format';
 import { useArrowKeys } from './arrow_keys';
 
-/** As many as are listed, and shown at once. */
-export const MOST_GRASPS = 200;
-
 interface GraspListProps {
   readonly grasps: readonly Grasp[];
   readonly loading: boolean;
-  /** Whether the server has more than these. */
-  readonly more: boolean;
+  /** Gets more of them; null when there are none. */
+  readonly loadMore: (() => void) | null;
   readonly chosen: string | null;
   readonly onChoose: (id: string) => void;
 }
@@ -29,7 +26,7 @@ function QualityBar({ share }: { readonly share: number }) {
 }
 
 /** The grasps in the order of the server. The arrows move the choice. */
-export function GraspList({ grasps, loading, more, chosen, onChoose }: GraspListProps) {
+export function GraspList({ grasps, loading, loadMore, chosen, onChoose }: GraspListProps) {
   const list = useRef<HTMLUListElement>(null);
   useEffect(() => {
     const item = chosen === null ? null : document.getElementById(idOf(chosen));
@@ -77,8 +74,13 @@ export function GraspList({ grasps, loading, more, chosen, onChoose }: GraspList
         ))}
       </ul>
       <p class="list-note">
-        {more ? `The first ${grasps.length}` : `${grasps.length} ${grasps.length === 1 ? 'grasp' : 'grasps'}`}
+        {loadMore ? `The first ${grasps.length}` : `${grasps.length} ${grasps.length === 1 ? 'grasp' : 'grasps'}`}
         {' '}· arrow keys step through
+        {loadMore && (
+          <>
+            {' '}· <button type="button" class="quiet" onClick={loadMore}>More</button>
+          </>
+        )}
       </p>
     </>
   );

@@ -34,13 +34,15 @@ interface GraspPictureProps {
   /** All to be shown at once, as ghosts; null: only the one. */
   readonly ghosts: readonly Grasp[] | null;
   readonly source: SourceOfGrasp | null;
+  /** A ghost was clicked. */
+  readonly onChoose: (id: string) => void;
 }
 
 const boxOf = (model: ObjectModel): Box3 => model.geometry.boundingBox ?? new Box3();
 const bottomOf = (box: Box3): Vector3 => box.getCenter(new Vector3()).setZ(box.min.z);
 
 /** A grasp on its object. */
-export function GraspPicture({ grasp, model, friction, progress, ghosts, source }: GraspPictureProps) {
+export function GraspPicture({ grasp, model, friction, progress, ghosts, source, onChoose }: GraspPictureProps) {
   const dark = useDark();
   const [stage, setStage] = useState<Stage | null>(null);
   const hand = useResource(grasp?.hand ?? null, () => loadHandModel(grasp?.hand ?? ''));
@@ -93,7 +95,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
   );
 
   const best = Math.max(...(ghosts ?? []).map(({ quality }) => quality.epsilon), Number.EPSILON);
-  useOnStage(
+  const swarm = useOnStage(
     stage,
     () =>
       hand.value && ready && ghosts
@@ -107,6 +109,13 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
         : null,
     [hand.value, ready, ghosts],
   );
+  useEffect(() => {
+    if (!stage || !swarm || !ghosts) return;
+    return stage.onClick((x, y) => {
+      const ghost = ghosts[stage.pick(x, y, swarm)?.instanceId ?? -1];
+      if (ghost) onChoose(ghost.id);
+    });
+  }, [stage, swarm, ghosts, onChoose]);
 
   useOnStage(
     stage,
@@ -144,7 +153,7 @@ export function GraspPicture({ grasp, model, friction, progress, ghosts, source 
           {ghosts && (
             <li>
               <Swatch colour={rampColour(0)} /> ε 0 … <Swatch colour={rampColour(1)} /> {formatNumber(best, 2)},{' '}
-              {ghosts.length} grasps
+              {ghosts.length} grasps; click one
             </li>
           )}
         </ul>

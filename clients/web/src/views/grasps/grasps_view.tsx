@@ -1,6 +1,6 @@
 import { useMemo } from 'preact/hooks';
 
-import { getGrasp, queryGrasps } from '../../api/client';
+import { getGrasp } from '../../api/client';
 import type { Grasp } from '../../api/types';
 import { navigate } from '../../app/navigation';
 import { useResource } from '../../app/resource';
@@ -8,17 +8,16 @@ import type { GraspExtra, Route } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
 import { FilterBox } from './filter_box';
 import { GraspBench } from './grasp_bench';
-import { GraspList, MOST_GRASPS } from './grasp_list';
+import { GraspList } from './grasp_list';
+import { useGraspPages } from './use_grasp_pages';
 
 type GraspsRoute = Extract<Route, { view: 'grasps' }>;
 
 /** Stored grasps by filter, best first, and one of them in 3-D. */
 export function GraspsView({ route }: { readonly route: GraspsRoute }) {
   const { filters } = route;
-  const listed = useResource(JSON.stringify(filters), () =>
-    queryGrasps({ limit: MOST_GRASPS, ...filters }),
-  );
-  const grasps = listed.value?.items ?? [];
+  const listed = useGraspPages(filters);
+  const { grasps } = listed;
   const chosen = route.grasp ?? grasps[0]?.id;
   const inList = grasps.find(({ id }) => id === chosen);
   // A link may name a grasp that the filters leave out.
@@ -55,8 +54,8 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
         {problem && <ProblemNote problem={problem} retry={listed.reload} />}
         <GraspList
           grasps={grasps}
-          loading={listed.loading && listed.value === null}
-          more={typeof listed.value?.next_cursor === 'string'}
+          loading={listed.loading}
+          loadMore={listed.loadMore}
           chosen={chosen ?? null}
           onChoose={select}
         />
@@ -67,6 +66,7 @@ export function GraspsView({ route }: { readonly route: GraspsRoute }) {
         others={onSameObject}
         show={route.show ?? null}
         onShow={show}
+        onChoose={select}
       />
     </div>
   );

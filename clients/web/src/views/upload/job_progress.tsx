@@ -1,6 +1,6 @@
 import { useEffect, useReducer, useState } from 'preact/hooks';
 
-import { cancelJob, queryGrasps } from '../../api/client';
+import { cancelJob, MOST_ITEMS, queryGrasps } from '../../api/client';
 import { followJob, isFinished } from '../../api/job_events';
 import { ProblemError, toProblem } from '../../api/problem';
 import type { Grasp, Job } from '../../api/types';
@@ -9,7 +9,7 @@ import { useResource } from '../../app/resource';
 import type { GraspExtra } from '../../app/routes';
 import { ProblemNote } from '../../ui/problem_note';
 import { GraspBench } from '../grasps/grasp_bench';
-import { GraspList, MOST_GRASPS } from '../grasps/grasp_list';
+import { GraspList } from '../grasps/grasp_list';
 import { addGrasp } from './found_grasps';
 import { StageLog, useStageLog } from './stage_log';
 
@@ -31,7 +31,7 @@ export function JobProgress({ id }: { readonly id: string }) {
   // When it is done the server knows the order of merit, and what was rejected.
   const transfer = job?.result?.transfer ?? null;
   const final = useResource(transfer, () =>
-    queryGrasps({ transfer: transfer ?? '', stage: 'assembly', sort: 'merit', limit: MOST_GRASPS }),
+    queryGrasps({ transfer: transfer ?? '', stage: 'assembly', sort: 'merit', limit: MOST_ITEMS }),
   );
   const grasps: readonly Grasp[] = final.value?.items ?? found;
   const grasp = grasps.find((each) => each.id === chosen) ?? grasps[0] ?? null;
@@ -58,7 +58,7 @@ export function JobProgress({ id }: { readonly id: string }) {
           )}
         </p>
         {(grasps.length > 0 || transfer !== null) && (
-          <GraspList grasps={grasps} loading={final.loading && grasps.length === 0} more={false}
+          <GraspList grasps={grasps} loading={final.loading && grasps.length === 0} loadMore={null}
             chosen={grasp?.id ?? null} onChoose={setChosen} />
         )}
       </div>
@@ -68,6 +68,7 @@ export function JobProgress({ id }: { readonly id: string }) {
         others={grasps}
         show={show}
         onShow={setShow}
+        onChoose={setChosen}
       />
     </div>
   );

@@ -1,4 +1,4 @@
-#include "tests/unit/engine/quality/qhull_oracle.h"
+#include "engine/reference/qhull_wrenches.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -8,7 +8,7 @@ namespace graspdb {
  positive when the origin is inside. Minus infinity for a flat hull. */
 double CalcEpsilonByQhull(const Wrenches& wrenches);
 
-/** The hull's volume by qhull. */
+/** The hull's volume by qhull; 0 for a flat one. */
 double CalcVolumeByQhull(const Wrenches& wrenches);
 
 }  // namespace graspdb

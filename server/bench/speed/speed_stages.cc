@@ -1,0 +1,298 @@
+#include "server/bench/speed/speed_stages.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "engine/geometry/subdivision.h"
+#include "engine/geometry/surface_sampling.h"
+#include "engine/grasp_engine.h"
+#include "engine/registration/surface_alignment.h"
+#include "engine/registration/surface_warp.h"
+#include "engine/segmentation/part_segmentation.h"
+#include "engine/transfer/contact_map.h"
+#include "server/codec/mesh_writer.h"
+#include "server/jobs/segmentation.h"
+
+namespace graspdb {
+namespace {
+
+// Beyond what a user may send: a bench makes such meshes itself.
+constexpr int64_t kMostTriangles = 4'000'000;
+
+std::span<const uint8_t> AsBytes(const std::string& text) {
+  return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
+}
+
+Timing MakeTiming(double seconds) { return {{seconds}, 1}; }
+
+class StageBench {
+ public:
+  StageBench(const Service& service, const Decoder& decoder,
+             const StageOrder& order, ExecutionContext& context)
+      : store_(service.store()),
+        service_(service),
+        decoder_(decoder),
+        order_(order),
+        context_(context) {}
+
+  Result<std::vector<SpeedRow>> Run() {
+    for (const TriangleMesh& mesh : order_.meshes) {
+      context_.ReportProgress("decode and segment", 0.0);
+      GRASPDB_TRY_VOID(MeasureDecoding(mesh));
+      GRASPDB_TRY_VOID(MeasureSegmentation(mesh));
+    }
+    context_.ReportProgress("align and map", 0.4);
+    GRASPDB_TRY_VOID(MeasureMapping());
+    context_.ReportProgress("transfer", 0.5);
+    GRASPDB_TRY_VOID(MeasureTransfer());
+    GRASPDB_TRY_VOID(DescribeLearning());
+    return std::move(rows_);
+  }
+
+ private:
+  void Add(const std::string& name, std::optional<int> triangles, Timing timing,
+           std::optional<double> goal = std::nullopt) {
+    rows_.push_back({name, triangles, std::move(timing), std::nullopt, goal});
+  }
+
+  Result<void> MeasureDecoding(const TriangleMesh& mesh) {
+    const std::string text = WriteMesh(mesh, MeshFormat::kObj);
+    DecodeRequest request;
+    request.format = MeshFormat::kObj;
+    Timing read, repair, decimate;
+    std::optional<Error> error;
+    StopwatchOptions wall = order_.stopwatch;
+    wall.wall = true;
+    const Timing whole = TimeCalls(
+        [&] {
+          const auto decoded = decoder_.Decode(AsBytes(text), request);
+          if (!decoded) {
+            error = decoded.error();
+            return 0;
+          }
+          read.samples.push_back(decoded->seconds.read);
+          repair.samples.push_back(decoded->seconds.repair);
+          decimate.samples.push_back(decoded->seconds.decimate);
+          return decoded->mesh_O.num_triangles();
+        },
+        wall);
+    if (error) return *error;
+    const int triangles = mesh.num_triangles();
+    Add("decode, in a sandboxed process", triangles, whole);
+    Add("decode: read", triangles, read);
+    Add("decode: repair", triangles, repair);
+    Add("decode: decimate", triangles, decimate);
+    return {};
+  }
+
+  // Of the mesh that is searched on, as an import does it.
+  Result<void> MeasureSegmentation(const TriangleMesh& mesh) {
+    GRASPDB_TRY(category, store_.FindCategory(order_.category));
+    DecodeRequest request;
+    request.format = MeshFormat::kObj;
+    GRASPDB_TRY(
+        decoded,
+        decoder_.Decode(AsBytes(WriteMesh(mesh, MeshFormat::kObj)), request));
+    ObjectMeshes meshes;
+    meshes.canonical = decoded.mesh_O;
+    meshes.work = decoded.work_O;
+    std::optional<Error> error;
+    const Timing timing = TimeCalls(
+        [&] {
+          const auto segmented =
+              SegmentByExamples(store_, category, category.segmentation, meshes,
+                                "", order_.seed, context_);
+          if (!segmented) error = segmented.error();
+          return segmented ? segmented->parts.size() : 0;
+        },
+        WallClock());
+    if (error) return *error;
+    const int triangles = mesh.num_triangles();
+    Add("segment", triangles, timing, triangles <= 7000 ? 0.15 : 0.6);
+    return {};
+  }
+
+  StopwatchOptions WallClock() const {
+    StopwatchOptions options = order_.stopwatch;
+    options.wall = true;
+    return options;
+  }
+
+  // The first example and what was learned of it, and the first mesh segmented.
+  struct Pair {
+    LabelledMesh example;
+    std::vector<Part> example_parts;
+    LabelledMesh novel;
+    SegmentationResult segmented;
+    std::vector<std::shared_ptr<const GraspSpace>> spaces;  // By label.
+  };
+
+  Result<Pair> MakePair() const {
+    Pair pair;
+    GRASPDB_TRY(category, store_.FindCategory(order_.category));
+    GRASPDB_TRY(examples, LoadExamples(store_, order_.category, ""));
+    pair.example = examples.meshes.front();
+    GRASPDB_TRY(parts, store_.ReadSolids(examples.ids.front()));
+    pair.example_parts = std::move(parts);
+    pair.novel.mesh_O = order_.meshes.front();
+    GRASPDB_TRY(segmented,
+                SegmentObject(pair.novel.mesh_O, MakeVocabulary(category),
+                              {pair.example}, category.segmentation,
+                              order_.seed, context_));
+    pair.novel.face_labels = segmented.face_labels;
+    pair.segmented = std::move(segmented);
+    pair.spaces.resize(category.parts.size());
+    GRASPDB_TRY(spaces,
+                store_.ListGraspSpaces(
+                    {order_.category, "", kDefaultHand, examples.ids.front()},
+                    {1000, ""}));
+    for (const StoredGraspSpace& record : spaces.items) {
+      for (size_t label = 0; label < category.parts.size(); ++label) {
+        if (category.parts[label].label != record.part_label) continue;
+        GRASPDB_TRY(space, store_.ReadGraspSpace(record.id));
+        pair.spaces[label] =
+            std::make_shared<const GraspSpace>(std::move(space));
+      }
+    }
+    return pair;
+  }
+
+  Result<void> MeasureMapping() {
+    GRASPDB_TRY(pair, MakePair());
+    const MappingParameters mapping;
+    const Part& part_N = pair.segmented.parts.front();
+    const auto at = std::find_if(
+        pair.example_parts.begin(), pair.example_parts.end(),
+        [&](const Part& part) { return part.label == part_N.label; });
+    if (at == pair.example_parts.end()) {
+      return Error{ErrorCode::kInternal, "The example lacks a part."};
+    }
+    const auto sample = [&](const Part& part) {
+      return SamplePoissonDisk(part.solid_O, mapping.samples, order_.seed,
+                               part.num_surface_faces);
+    };
+    const SurfaceSamples samples_E = sample(*at);
+    const SurfaceSamples samples_N = sample(part_N);
+    Add("samples of a part", std::nullopt,
+        TimeCalls([&] { return sample(part_N).size(); }, order_.stopwatch));
+    SurfaceAlignment start;
+    start.X_NE = pair.segmented.X_NE;
+    start.scale = pair.segmented.scale;
+    AlignmentOptions options;
+    options.normal_weight = mapping.normal_weight;
+    Add("align a part", std::nullopt,
+        TimeCalls(
+            [&] {
+              return RefineAlignment(samples_E, samples_N, start, options)
+                  .residual;
+            },
+            order_.stopwatch));
+    const SurfaceIndex index_E(at->solid_O);
+    const SurfaceIndex index_N(part_N.solid_O);
+    const AffineMap map_NE =
+        RefineAlignment(samples_E, samples_N, start, options).map_NE;
+    Add("contact map of a part", std::nullopt,
+        TimeCalls(
+            [&] {
+              return ContactMap(samples_E, samples_N,
+                                WarpSamples(MapSamples(samples_E, map_NE),
+                                            samples_N, mapping),
+                                index_E, index_N, mapping)
+                  .CalcMappedShare();
+            },
+            order_.stopwatch));
+    return {};
+  }
+
+  Result<void> MeasureTransfer() {
+    GRASPDB_TRY(pair, MakePair());
+    TransferRequest request;
+    GRASPDB_TRY(hand, service_.FindHandModel(kDefaultHand));
+    request.hand = hand;
+    request.example = pair.example;
+    request.novel = pair.novel;
+    request.example_parts = pair.example_parts;
+    request.novel_parts = pair.segmented.parts;
+    request.X_NE = pair.segmented.X_NE;
+    request.scale = pair.segmented.scale;
+    for (const Part& part : request.novel_parts) {
+      request.grasp_spaces.push_back(
+          pair.spaces[static_cast<size_t>(part.label)]);
+    }
+    request.sources_per_part = order_.sources;
+    request.seed = order_.seed;
+    for (const int threads : {1, 2}) {
+      request.threads = threads;
+      const double begin = internal::ReadClock(true);
+      GRASPDB_TRY(result, Transfer(request, context_));
+      Add(fmt::format("transfer of {} sources a part, {} thread{}",
+                      order_.sources, threads, threads > 1 ? "s" : ""),
+          pair.novel.mesh_O.num_triangles(),
+          MakeTiming(internal::ReadClock(true) - begin));
+      if (threads > 1) break;
+      Timing replan, assemble, both;
+      for (const TransferRecord& record : result.records) {
+        if (record.transfer_seconds == 0.0) continue;
+        replan.samples.push_back(record.transfer_seconds);
+        assemble.samples.push_back(record.assembly_seconds);
+        both.samples.push_back(record.transfer_seconds +
+                               record.assembly_seconds);
+      }
+      Add("replan a grasp on its part", std::nullopt, replan);
+      Add("assemble a grasp", std::nullopt, assemble);
+      Add("one grasp, both stages", std::nullopt, both, 0.025);
+    }
+    return {};
+  }
+
+  // As the database tells of it.
+  Result<void> DescribeLearning() {
+    GRASPDB_TRY(spaces,
+                store_.ListGraspSpaces({order_.category, "", kDefaultHand, ""},
+                                       {1000, ""}));
+    for (const StoredGraspSpace& space : spaces.items) {
+      const std::string what = "learn " + space.part_label;
+      Add(what, std::nullopt, MakeTiming(space.seconds), 10.0);
+      Add(what + ": labels and classifier", std::nullopt,
+          MakeTiming(space.configuration_space_seconds));
+      Add(what + ": swarm", std::nullopt,
+          MakeTiming(space.seconds - space.configuration_space_seconds));
+    }
+    return {};
+  }
+
+  const Store& store_;
+  const Service& service_;
+  const Decoder& decoder_;
+  const StageOrder& order_;
+  ExecutionContext& context_;
+  std::vector<SpeedRow> rows_;
+};
+
+}  // namespace
+
+Result<std::vector<SpeedRow>> MeasureStages(const Service& service,
+                                            const Decoder& decoder,
+                                            const StageOrder& order,
+                                            ExecutionContext& context) {
+  return StageBench(service, decoder, order, context).Run();
+}
+
+Result<TriangleMesh> ResampleMesh(const Decoder& decoder,
+                                  const TriangleMesh& mesh, int triangles) {
+  TriangleMesh finer = mesh;
+  while (finer.num_triangles() < triangles) finer = Subdivide(finer);
+  DecodeRequest request;
+  request.format = MeshFormat::kPly;
+  request.limits.max_triangles = kMostTriangles;
+  request.work_triangles = triangles;
+  GRASPDB_TRY(
+      decoded,
+      decoder.Decode(AsBytes(WriteMesh(finer, MeshFormat::kPly)), request));
+  return std::move(decoded.work_O);
+}
+
+}  // namespace graspdb

@@ -1,0 +1,148 @@
+"""64 clients at once: queries, uploads and transfers mixed. Nothing is answered but
+what was asked for, or 429 or 503 with Retry-After; memory and sockets do not
+grow. Seconds are GRASPDB_LOAD_SECONDS (default 8); latencies are told, not judged."""
+
+import collections
+import os
+import pathlib
+import random
+import re
+import subprocess
+import threading
+import time
+
+import numpy
+import pytest
+import requests
+
+from conftest import QUICK
+from contract_client import ROOT, Contract
+from live_server import LiveServer
+
+CLIENTS = 64
+SECONDS = float(os.environ.get("GRASPDB_LOAD_SECONDS", "8"))
+QUEUE = 20  # Jobs that may wait.
+MOST_GROWTH = 96 << 20  # Bytes, after the first third.
+
+
+def read_process(pid):
+    """Resident bytes and open sockets."""
+    status = pathlib.Path(f"/proc/{pid}/status").read_text()
+    resident = 1024 * int(re.search(r"VmRSS:\s+(\d+)", status)[1])
+    sockets = 0
+    for descriptor in os.listdir(f"/proc/{pid}/fd"):
+        try:
+            sockets += os.readlink(f"/proc/{pid}/fd/{descriptor}").startswith("socket:")
+        except FileNotFoundError:
+            pass
+    return resident, sockets
+
+
+@pytest.fixture(scope="module")
+def busy(binary, tmp_path_factory):
+    """A server of its own, with a mug that has been learned."""
+    folder = tmp_path_factory.mktemp("load")
+    database = folder / "load.db"
+    (folder / "hands").symlink_to(ROOT / "data" / "hands")
+    subprocess.run([binary, "populate", str(folder), "--db", str(database)], check=True,
+                   timeout=400)
+    server = LiveServer(binary, database, folder, "--max-queued-jobs", str(QUEUE),
+                        "--http-threads", "128")
+    contract = Contract(server.url)
+    mug = ROOT / "data" / "mug"
+    contract.call("postCategory", 201, body={
+        "name": "mug", "title": "Mugs", "parts": [{"label": "body"}, {"label": "handle"}],
+        "topology": [["body", "handle"]]})
+    example = contract.call(
+        "postExample", 200, path={"name": "mug"}, query={"learn": "false"},
+        headers={"Prefer": "wait=150"},
+        files={"mesh": ("classic.obj", (mug / "classic.obj").read_bytes()),
+               "labels": ("l.json", (mug / "classic.labels.json").read_bytes())})
+    contract.call("postGraspSpaces", 200, path={"id": example["id"]},
+                  headers={"Prefer": "wait=300"}, timeout=320,
+                  body={"parameters": QUICK, "parts": ["body"]})
+    yield server
+    assert server.alive(), server.log()
+    assert server.stop() == 0, server.log()
+    assert "event=internal" not in server.log(), server.log()
+
+
+class Client(threading.Thread):
+    def __init__(self, number, url, end):
+        super().__init__()
+        self.number, self.url, self.end = number, url, end
+        self.random = random.Random(number)
+        self.answers = collections.Counter()
+        self.query_seconds = []
+        self.failures = []
+
+    def run(self):
+        session = requests.Session()
+        mesh = (ROOT / "data" / "mug" / "latte.obj").read_bytes()
+        while time.monotonic() < self.end:
+            what = self.random.random()
+            try:
+                if what < 0.9:
+                    self.query(session)
+                elif what < 0.95:
+                    self.post(session, "/v1/objects?category=mug&format=obj", mesh)
+                else:
+                    self.post(session, "/v1/grasps?category=mug&part=body&sources=2&count=1"
+                                       "&format=obj", mesh)
+            except requests.RequestException as error:
+                self.failures.append(repr(error))
+                return
+
+    def query(self, session):
+        path = self.random.choice(["/v1/grasps?category=mug&limit=20", "/v1/objects?limit=20",
+                                   "/v1/categories", "/healthz", "/v1/jobs?limit=5"])
+        start = time.monotonic()
+        answer = session.get(self.url + path, timeout=60)
+        self.query_seconds.append(time.monotonic() - start)
+        self.count("query", answer, {200})
+
+    def post(self, session, path, mesh):
+        fresh = b"# %d %d\n" % (self.number, self.random.getrandbits(60)) + mesh
+        answer = session.post(self.url + path, data=fresh, timeout=120,
+                              headers={"Prefer": "respond-async"})
+        self.count(path.split("?")[0], answer, {200, 201, 202})
+
+    def count(self, what, answer, expected):
+        self.answers[what, answer.status_code] += 1
+        if answer.status_code in (429, 503):
+            if not answer.headers.get("Retry-After"):
+                self.failures.append(f"{what}: no Retry-After")
+            time.sleep(0.2)
+        elif answer.status_code not in expected:
+            self.failures.append(f"{what}: {answer.status_code} {answer.text[:300]}")
+
+
+def test_sixty_four_clients_get_what_they_ask_for_or_are_told_to_wait(busy):
+    start = time.monotonic()
+    clients = [Client(i, busy.url, start + SECONDS) for i in range(CLIENTS)]
+    for client in clients:
+        client.start()
+    time.sleep(SECONDS / 3)
+    before, _ = read_process(busy.process.pid)
+    for client in clients:
+        client.join()
+    after, _ = read_process(busy.process.pid)
+
+    failures = [failure for client in clients for failure in client.failures]
+    assert not failures, failures[:5]
+    answers = sum((client.answers for client in clients), collections.Counter())
+    seconds = numpy.concatenate([client.query_seconds for client in clients])
+    print(f"\n{SECONDS:.0f} s, {sum(answers.values())} answers: {dict(answers)}\n"
+          f"queries: p50 {1e3 * numpy.quantile(seconds, .5):.1f} ms, "
+          f"p99 {1e3 * numpy.quantile(seconds, .99):.1f} ms; "
+          f"resident {before >> 20} -> {after >> 20} MiB")
+    assert answers["query", 200] > CLIENTS
+    assert answers["/v1/objects", 201] + answers["/v1/objects", 202] > 0
+    assert after - before < MOST_GROWTH
+
+    # Once they have gone it is as it was: of all sockets the listening one stays.
+    deadline = time.monotonic() + 30
+    while read_process(busy.process.pid)[1] > 1 and time.monotonic() < deadline:
+        time.sleep(0.5)
+    assert read_process(busy.process.pid)[1] == 1
+    assert requests.get(busy.url + "/healthz", timeout=5).status_code == 200

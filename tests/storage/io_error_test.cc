@@ -1,0 +1,101 @@
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include "server/store/store.h"
+#include "tests/support/faulty_vfs.h"
+#include "tests/support/rounds.h"
+#include "tests/support/stored_records.h"
+#include "tests/support/temp_folder.h"
+
+namespace graspdb {
+namespace {
+
+using ::testing::IsEmpty;
+
+struct Fault {
+  const char* name;
+  int code;
+};
+
+class IoError : public ::testing::TestWithParam<Fault> {};
+
+// Whichever write fails, it says so, reads go on, the same write succeeds once
+// the fault is gone, and nothing that was acknowledged is lost.
+TEST_P(IoError, OfAnyCallIsToldAndHeals) {
+  const TempFolder folder;
+  FaultyVfs& vfs = FaultyVfs::Get();
+  vfs.Watch(folder.path());
+  auto store = Store::Open(folder.File("a.db"));
+  ASSERT_TRUE(store) << store.error().message;
+  ASSERT_TRUE((*store)->InsertCategory(MakeMugCategory()));
+  std::vector<std::string> ids;
+  int told = 0;
+  for (int k = 1; k <= CountRounds(40); ++k) {
+    vfs.FailAt(k % 40 + 1, GetParam().code);
+    for (int i = 0; !vfs.has_failed(); ++i) {
+      const NewObject object = MakeNewObject(
+          std::to_string(k) + "/" + std::to_string(i), ObjectRole::kExample);
+      const auto stored = (*store)->InsertObject(object);
+      if (stored) {
+        // A checkpoint that fails is none of the write's concern.
+        ids.push_back(stored->id);
+        continue;
+      }
+      EXPECT_EQ(stored.error().code, ErrorCode::kStorage)
+          << stored.error().message;
+      ++told;
+      if (!ids.empty()) {
+        EXPECT_TRUE((*store)->FindObject(ids.back()));
+      }
+      vfs.FailAt(0, 0);
+      const auto again = (*store)->InsertObject(object);
+      ASSERT_TRUE(again) << "after call " << k << ": " << again.error().message;
+      ids.push_back(again->id);
+      break;
+    }
+    vfs.FailAt(0, 0);
+  }
+  EXPECT_GT(told, 5);
+  for (const std::string& id : ids) {
+    ASSERT_TRUE((*store)->ReadObjectMeshes(id));
+  }
+  EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
+  store->reset();
+  auto reopened = Store::Open(folder.File("a.db"));
+  ASSERT_TRUE(reopened) << reopened.error().message;
+  EXPECT_EQ((*reopened)->Count().value().objects, std::ssize(ids));
+  EXPECT_THAT((*reopened)->Check().value().problems, IsEmpty());
+  RecordProperty("failed_calls", told);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, IoError,
+                         ::testing::Values(Fault{"Write", SQLITE_IOERR_WRITE},
+                                           Fault{"Flush", SQLITE_IOERR_FSYNC},
+                                           Fault{"DiskFull", SQLITE_FULL}),
+                         [](const auto& fault) { return fault.param.name; });
+
+// A database that cannot be made leaves nothing in the way of the next try.
+TEST(IoErrorWhileCreating, IsToldAndHeals) {
+  FaultyVfs& vfs = FaultyVfs::Get();
+  for (int k = 1; k <= CountRounds(40); ++k) {
+    const TempFolder folder;
+    vfs.Watch(folder.path());
+    vfs.FailAt(k, SQLITE_FULL);
+    {
+      const auto store = Store::Open(folder.File("a.db"));
+      if (!store) {
+        EXPECT_EQ(store.error().code, ErrorCode::kStorage);
+      }
+    }
+    vfs.FailAt(0, 0);
+    auto store = Store::Open(folder.File("a.db"));
+    ASSERT_TRUE(store) << "after call " << k << ": " << store.error().message;
+    EXPECT_TRUE((*store)->InsertCategory(MakeMugCategory()));
+  }
+}
+
+}  // namespace
+}  // namespace graspdb
