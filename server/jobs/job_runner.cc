@@ -5,6 +5,7 @@
 
 #include "server/codec/input_json.h"
 #include "server/codec/record_json.h"
+#include "server/jobs/low_priority.h"
 #include "server/jobs/service.h"
 #include "server/jobs/sub_context.h"
 
@@ -120,6 +121,7 @@ Result<StoredJob> JobRunner::Cancel(const std::string& id) {
 }
 
 void JobRunner::Work(bool slow) {
+  LowerThreadPriority();
   while (true) {
     uint64_t seen = 0;
     {

@@ -35,7 +35,8 @@ Result<HttpResponse> ListObjects(const Service& service,
       found, [](const StoredObject& object) { return ToJson(object); });
 }
 
-Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
+Result<HttpResponse> PostObject(Service& service, WorkSlots& slots,
+                                const HttpRequest& request) {
   QueryReader query(request.query);
   auto upload = ReadUpload(request, query, {"labels"});
   const auto category = query.Text("category");
@@ -57,6 +58,8 @@ Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
   }
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
+    const auto slot = slots.Take(request.stop);
+    if (!slot) return slot.error();
     GRASPDB_TRY(imported, service.ImportObject(order, context.context()));
     HttpResponse response = MakeJsonResponse(
         imported.created ? 201 : 200, ToJson(imported.object, imported.parts));
@@ -66,7 +69,7 @@ Result<HttpResponse> PostObject(Service& service, const HttpRequest& request) {
   });
 }
 
-Result<HttpResponse> SearchByShape(Service& service,
+Result<HttpResponse> SearchByShape(Service& service, WorkSlots& slots,
                                    const HttpRequest& request) {
   QueryReader query(request.query);
   auto upload = ReadUpload(request, query, {});
@@ -86,6 +89,8 @@ Result<HttpResponse> SearchByShape(Service& service,
   }
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
+    const auto slot = slots.Take(request.stop);
+    if (!slot) return slot.error();
     GRASPDB_TRY(found,
                 service.SearchByShape(**upload, shape, context.context()));
     std::vector<std::string> items;
@@ -170,7 +175,7 @@ Result<HttpResponse> ListParts(const Service& service,
                           [](const StoredPart& part) { return ToJson(part); });
 }
 
-Result<HttpResponse> PostSegmentation(Service& service,
+Result<HttpResponse> PostSegmentation(Service& service, WorkSlots& slots,
                                       const HttpRequest& request) {
   QueryReader query(request.query);
   const bool cascade = query.Boolean("cascade").value_or(false);
@@ -180,6 +185,8 @@ Result<HttpResponse> PostSegmentation(Service& service,
   order.cascade = cascade;
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
+    const auto slot = slots.Take(request.stop);
+    if (!slot) return slot.error();
     GRASPDB_TRY(done, service.Resegment(order, context.context()));
     return MakeJsonResponse(200, ToJson(done.object, done.parts));
   });
@@ -207,20 +214,23 @@ Result<HttpResponse> PostGraspSpaces(Service& service,
 
 }  // namespace
 
-void AddObjectRoutes(Router& router, Service& service) {
+void AddObjectRoutes(Router& router, Service& service,
+                     const RouteOptions& options) {
   const std::string one = "/v1/objects/{id}";
-  router.Add({"POST", "/v1/search", BodyKind::kUpload,
-              [&service](const HttpRequest& request) {
-                return SearchByShape(service, request);
-              }});
+  router.Add(
+      {"POST", "/v1/search", BodyKind::kUpload,
+       [&service, slots = options.work_slots](const HttpRequest& request) {
+         return SearchByShape(service, *slots, request);
+       }});
   router.Add({"GET", "/v1/objects", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return ListObjects(service, request);
               }});
-  router.Add({"POST", "/v1/objects", BodyKind::kUpload,
-              [&service](const HttpRequest& request) {
-                return PostObject(service, request);
-              }});
+  router.Add(
+      {"POST", "/v1/objects", BodyKind::kUpload,
+       [&service, slots = options.work_slots](const HttpRequest& request) {
+         return PostObject(service, *slots, request);
+       }});
   router.Add(
       {"GET", one, BodyKind::kNone, [&service](const HttpRequest& request) {
          return GetObject(service, request);
@@ -237,10 +247,11 @@ void AddObjectRoutes(Router& router, Service& service) {
               [&service](const HttpRequest& request) {
                 return ListParts(service, request);
               }});
-  router.Add({"POST", one + "/segmentation", BodyKind::kJson,
-              [&service](const HttpRequest& request) {
-                return PostSegmentation(service, request);
-              }});
+  router.Add(
+      {"POST", one + "/segmentation", BodyKind::kJson,
+       [&service, slots = options.work_slots](const HttpRequest& request) {
+         return PostSegmentation(service, *slots, request);
+       }});
   router.Add({"POST", one + "/grasp-spaces", BodyKind::kJson,
               [&service](const HttpRequest& request) {
                 return PostGraspSpaces(service, request);

@@ -7,6 +7,7 @@
 #include "server/http/router.h"
 #include "server/jobs/service.h"
 #include "server/routes/grasp_texts.h"
+#include "server/routes/work_slots.h"
 
 /** @file
  The operations of schema/openapi.yaml, one .cc per noun: decode the request,
@@ -22,6 +23,8 @@ struct RouteOptions {
   /** What GET /metrics tells of requests; may be null. */
   std::shared_ptr<RequestMetrics> metrics;
   std::shared_ptr<GraspTexts> grasp_texts{std::make_shared<GraspTexts>()};
+  /** For meshes that are decoded and segmented while someone waits. */
+  std::shared_ptr<WorkSlots> work_slots{std::make_shared<WorkSlots>(2, 32)};
 };
 
 void AddBackupRoutes(Router& router, Service& service);
@@ -34,7 +37,8 @@ void AddJobRoutes(Router& router, Service& service,
                   const RouteOptions& options);
 void AddMetricsRoutes(Router& router, Service& service,
                       const RouteOptions& options);
-void AddObjectRoutes(Router& router, Service& service);
+void AddObjectRoutes(Router& router, Service& service,
+                     const RouteOptions& options);
 void AddPartRoutes(Router& router, Service& service);
 void AddSystemRoutes(Router& router, Service& service);
 void AddTransferRoutes(Router& router, Service& service);

@@ -2,6 +2,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <mutex>
@@ -11,6 +12,7 @@
 
 #include "server/config.h"
 #include "server/http/http_server.h"
+#include "server/jobs/low_priority.h"
 #include "server/routes/routes.h"
 
 namespace graspdb {
@@ -89,6 +91,10 @@ int RunServer(Service& service, const ServerConfig& config) {
   routes.metrics = options.metrics;
   routes.default_wait = config.default_wait;
   routes.max_event_streams = static_cast<int>(config.http_threads) / 2;
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  routes.work_slots = std::make_shared<WorkSlots>(
+      std::max(1, cores), static_cast<int>(config.http_threads) / 2);
+  const LowPriorityHelpers helpers;
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());

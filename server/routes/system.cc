@@ -57,7 +57,7 @@ Router MakeRouter(Service& service, const RouteOptions& options) {
   Router router;
   AddSystemRoutes(router, service);
   AddCategoryRoutes(router, service);
-  AddObjectRoutes(router, service);
+  AddObjectRoutes(router, service, options);
   AddPartRoutes(router, service);
   AddGraspSpaceRoutes(router, service);
   AddGraspRoutes(router, service, options);

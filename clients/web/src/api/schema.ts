@@ -2109,6 +2109,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2265,6 +2266,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };

@@ -1,0 +1,31 @@
+#include "server/routes/work_slots.h"
+
+namespace graspdb {
+
+Result<std::shared_ptr<void>> WorkSlots::Take(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (free_ == 0) {
+    if (waiting_ >= most_waiting_) {
+      return Error{ErrorCode::kOverloaded,
+                   "Too many meshes are being worked on.",
+                   "send it again in a moment"};
+    }
+    ++waiting_;
+    const bool found =
+        given_back_.wait(lock, stop, [this] { return free_ > 0; });
+    --waiting_;
+    if (!found) {
+      return Error{ErrorCode::kCancelled, "The server is stopping."};
+    }
+  }
+  --free_;
+  return std::shared_ptr<void>(nullptr, [this](void*) { GiveBack(); });
+}
+
+void WorkSlots::GiveBack() {
+  const std::lock_guard lock(mutex_);
+  ++free_;
+  given_back_.notify_one();
+}
+
+}  // namespace graspdb

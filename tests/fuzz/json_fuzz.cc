@@ -1,0 +1,60 @@
+// JSON bodies and category files: whatever comes is an answer or an error that
+// says what is wrong.
+
+#include "engine/parameters/parameters.h"
+#include "server/codec/input_json.h"
+#include "server/codec/json.h"
+#include "server/codec/parameters_json.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace graspdb::fuzz {
+namespace {
+
+template <class T>
+void Expect(const Result<T>& result) {
+  if (!result) Require(!result.error().message.empty());
+}
+
+}  // namespace
+
+std::vector<std::string> MakeSeeds() {
+  return {
+      R"({"name":"mug","title":"Mugs","parts":[{"label":"body","tasks":{"use":"hold it"}},{"label":"handle"}],"topology":[["body","handle"]],"settings":{"samples":500}})",
+      R"({"parts":["body"],"hands":["barrett-bh8-280"],"seed":3,"parameters":{"swarm":{"particles":40}}})",
+      R"({"labels":["body","handle","body"]})",
+      R"({"label":"handle"})",
+      R"({"settings":{"samples":200,"unary_sigma":0.2},"seed":1})",
+      R"({"preset":"paper","contact":{"friction":0.4},"replan":{"iterations":10}})",
+      R"({"name":"mug","title":"Mugs","parts":[{"label":"body"}],"topology":[],"examples":[{"mesh":"a.obj","labels":"a.json"}],"novel":[{"name":"b","mesh":"b.obj"}]})",
+      "[[[[[[1e3,-0.5,\"\\u00e4\",null,true]]]]]]"};
+}
+
+}  // namespace graspdb::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace graspdb;
+  using namespace graspdb::fuzz;
+  const std::string text(AsText(data, size));
+  if (const auto json = ParseJson(text)) {
+    const std::string dumped = DumpJson(*json);
+    const auto again = ParseJson(dumped);
+    Require(again.has_value() && DumpJson(*again) == dumped);
+  } else {
+    Require(!json.error().message.empty());
+  }
+  Expect(CategoryFromJson(text));
+  Expect(CategoryFileFromJson(text));
+  Expect(FaceLabelsFromJson(text));
+  Expect(HandFileFromJson(text));
+  Expect(PartLabelFromJson(text));
+  Expect(SegmentOrderFromJson(text));
+  Expect(LearnOrderFromJson(text));
+  Expect(StoredTransferOrderFromJson(text));
+  Expect(SegmentationFromJson(text, {}));
+  if (const auto parameters = ParametersFromJson(text, {})) {
+    const std::string canonical = ParametersToJson(*parameters);
+    const auto again = ParametersFromJson(canonical, {});
+    Require(again.has_value() && ParametersToJson(*again) == canonical);
+  }
+  return 0;
+}
