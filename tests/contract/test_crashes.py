@@ -1,0 +1,202 @@
+"""A server that is killed, ended and started again while clients use it: nothing
+that it acknowledged is lost, nothing is done twice, nobody gets half an answer.
+GRASPDB_ROUNDS sets how often (default: a few)."""
+
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import threading
+import time
+
+import pytest
+import requests
+
+import meshes
+from contract_client import Contract
+from live_server import LiveServer
+
+ROUNDS = int(os.environ.get("GRASPDB_ROUNDS", "0"))
+
+
+class Phoenix:
+    """A server on one database, on a port of its own each time it is started."""
+
+    def __init__(self, binary, database, folder):
+        self.binary, self.database, self.folder = binary, database, folder
+        self.lock = threading.Lock()
+        self.live = LiveServer(binary, database, folder)
+
+    @property
+    def url(self):
+        return self.live.url
+
+    def kill(self):
+        self.live.process.send_signal(signal.SIGKILL)
+        self.live.process.wait()
+
+    def start(self):
+        begin = time.monotonic()
+        live = LiveServer(self.binary, self.database, self.folder)
+        while requests.get(live.url + "/healthz", timeout=5).status_code != 200:
+            pass
+        self.live = live
+        return time.monotonic() - begin
+
+
+@pytest.fixture
+def phoenix(binary, server, world, tmp_path):
+    """On a copy of the database with a learned mug."""
+    database = tmp_path / "copy.db"
+    subprocess.run([binary, "backup", str(database), "--db", str(server.database)], check=True,
+                   stdout=subprocess.DEVNULL)
+    bird = Phoenix(binary, database, tmp_path)
+    yield bird
+    assert "event=internal" not in bird.live.log(), bird.live.log()
+    if bird.live.alive():
+        assert bird.live.stop() == 0, bird.live.log()
+    check = subprocess.run([binary, "check", "--db", str(database)], capture_output=True, text=True)
+    assert check.returncode == 0, check.stdout + check.stderr
+
+
+def test_one_key_has_one_effect_however_often_it_is_sent(phoenix):
+    """Objects from 8 threads under keys of their own; the server is killed at any
+    moment, whoever got no answer asks again."""
+    wanted = ROUNDS or 40
+    keys = list(range(wanted))
+    random.Random(1).shuffle(keys)
+    done = {}
+    lock = threading.Lock()
+
+    def work():
+        while True:
+            with lock:
+                if not keys:
+                    return
+                key = keys.pop()
+            body = meshes.box_obj(0.05 + 1e-5 * key, 0.06, 0.07)
+            while True:
+                try:
+                    answer = requests.post(phoenix.url + "/v1/objects?format=obj", data=body,
+                                           headers={"Idempotency-Key": f"key-{key}"}, timeout=60)
+                except requests.RequestException:
+                    time.sleep(0.05)
+                    continue
+                if answer.status_code in (409, 503):  # In flight; too many at once.
+                    time.sleep(0.05)
+                    continue
+                assert answer.status_code in (200, 201), answer.text
+                with lock:
+                    done.setdefault(key, set()).add(answer.json()["id"])
+                break
+
+    before = Contract(phoenix.url).call("listObjects", 200, query={"limit": 1000})["items"]
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    starts = []
+    chance = random.Random(2)
+    while any(thread.is_alive() for thread in threads):
+        time.sleep(chance.uniform(0.2, 0.8))
+        if not any(thread.is_alive() for thread in threads):
+            break
+        phoenix.kill()
+        starts.append(phoenix.start())
+    for thread in threads:
+        thread.join()
+    assert len(done) == wanted and all(len(ids) == 1 for ids in done.values())
+    after = []
+    contract = Contract(phoenix.url)
+    cursor = None
+    while True:
+        page = contract.call("listObjects", 200, query={"limit": 1000, "cursor": cursor})
+        after += page["items"]
+        cursor = page["next_cursor"]
+        if not cursor:
+            break
+    assert len(after) - len(before) == wanted
+    print(f"\n{wanted} objects, {len(starts)} kills, "
+          f"slowest start {max(starts, default=0):.2f} s")
+    assert starts, "nothing was killed"
+
+
+def test_a_job_is_taken_up_again_and_done_once(phoenix):
+    wanted = max(4, ROUNDS // 10)
+    contract = Contract(phoenix.url)
+    jobs = {}
+    mug = (pathlib.Path(__file__).parents[2] / "data" / "mug" / "latte.obj").read_bytes()
+    for i in range(wanted):
+        job = contract.call(
+            "postGrasps", 202, body=b"# %d\n" % i + mug, headers={"Prefer": "respond-async"},
+            query={"category": "mug", "part": "body", "sources": 2, "format": "obj"})
+        jobs[job["id"]] = None
+    chance = random.Random(3)
+    deadline = time.monotonic() + 60 + 20 * wanted
+    kills = 0
+    while True:
+        contract = Contract(phoenix.url)
+        states = {id: contract.call("getJob", 200, path={"id": id}) for id in jobs}
+        if all(job["state"] in ("succeeded", "failed") for job in states.values()):
+            break
+        assert time.monotonic() < deadline, states
+        time.sleep(chance.uniform(0.5, 2.0))
+        # A job that was begun three times fails: leave it time to end.
+        if kills < wanted // 2:
+            phoenix.kill()
+            phoenix.start()
+            kills += 1
+    failed = [job for job in states.values() if job["state"] == "failed"]
+    # Begun three times and killed each time.
+    assert all(job["error"]["code"] == "internal" for job in failed), failed
+    assert len(failed) <= kills // 3, failed
+    transfers = [job["result"]["transfer"] for job in states.values() if not job.get("error")]
+    assert len(set(transfers)) == len(transfers)
+    listed = contract.call("listTransfers", 200, query={"limit": 1000})["items"]
+    ids = [transfer["id"] for transfer in listed]
+    assert len(ids) == len(set(ids)) and set(transfers) <= set(ids)
+    print(f"\n{wanted} jobs, {kills} kills, {len(failed)} given up")
+
+
+def test_a_server_that_is_asked_to_end_answers_first(phoenix):
+    """Clients ask all the time; whatever is answered is whole."""
+    rounds = max(3, ROUNDS // 10)
+    slowest = 0.0
+    answered = 0
+    for _ in range(rounds):
+        stop = threading.Event()
+        failures, counts = [], []
+
+        def ask():
+            session = requests.Session()
+            count = 0
+            while not stop.is_set():
+                try:
+                    answer = session.get(phoenix.url + "/v1/grasps?limit=50", timeout=30)
+                except requests.ConnectionError as error:
+                    # Refused, or a kept connection that was closed between two
+                    # requests; never in the middle of an answer.
+                    if "IncompleteRead" in repr(error):
+                        failures.append(repr(error))
+                    break
+                if answer.status_code != 200 or "items" not in answer.json():
+                    failures.append(answer.text[:200])
+                count += 1
+            counts.append(count)
+
+        clients = [threading.Thread(target=ask) for _ in range(6)]
+        for client in clients:
+            client.start()
+        time.sleep(0.4)
+        begin = time.monotonic()
+        assert phoenix.live.stop() == 0, phoenix.live.log()
+        slowest = max(slowest, time.monotonic() - begin)
+        stop.set()
+        for client in clients:
+            client.join()
+        assert not failures, failures[:3]
+        answered += sum(counts)
+        phoenix.start()
+    assert answered > 0
+    print(f"\n{rounds} ends, {answered} answers, slowest end {slowest:.2f} s")
+    assert slowest < 10.0
