@@ -24,6 +24,7 @@ namespace {
 constexpr double kMicro = 1e-6;
 constexpr int kFewContacts = 3;
 constexpr int kManyContacts = 7;
+constexpr int kPostures = 64;
 constexpr int kPoints = 1024;
 constexpr double kAround = 0.02;  // Of the box, m.
 // CGAL's shape diameters take too long beyond.
@@ -70,7 +71,7 @@ class PrimitiveBench {
 
   // What depends on how fine the object is.
   void MeasureObject(const TriangleMesh& mesh) {
-    const SpeedScene scene = MakeSpeedScene(hand_, mesh, false);
+    const SpeedScene scene = MakeSpeedScene(hand_, mesh, kPostures, 0);
     for (const bool free : {true, false}) {
       const auto& postures = free ? scene.free : scene.colliding;
       std::vector<std::vector<RigidTransform>> X_HL;

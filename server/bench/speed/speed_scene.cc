@@ -8,8 +8,6 @@
 namespace graspdb {
 namespace {
 
-constexpr size_t kPostures = 64;
-
 // The palm looks at a point of the object from a hand's length away.
 HandConfiguration DrawPosture(const HandShape& hand, const Solid& solid,
                               Random& random) {
@@ -34,13 +32,15 @@ HandConfiguration DrawPosture(const HandShape& hand, const Solid& solid,
 }  // namespace
 
 SpeedScene MakeSpeedScene(std::shared_ptr<const HandModel> hand,
-                          const TriangleMesh& mesh_O, bool grasps) {
+                          const TriangleMesh& mesh_O, int postures,
+                          int grasps) {
   SpeedScene scene{
       HandShape(std::move(hand)), Solid(mesh_O), Parameters(), {}, {}, {}};
-  const size_t wanted = grasps ? kPostures : 0;
+  const auto wanted = static_cast<size_t>(postures);
+  const auto wanted_grasps = static_cast<size_t>(grasps);
   Random random(1);
-  while (scene.free.size() < kPostures || scene.colliding.size() < kPostures ||
-         scene.grasps.size() < wanted) {
+  while (scene.free.size() < wanted || scene.colliding.size() < wanted ||
+         scene.grasps.size() < wanted_grasps) {
     const HandConfiguration posture =
         DrawPosture(scene.hand, scene.solid, random);
     const bool collides =
@@ -48,8 +48,8 @@ SpeedScene MakeSpeedScene(std::shared_ptr<const HandModel> hand,
                           CalcLinkPoses(scene.hand.model(), posture.q),
                           scene.solid) >= 0;
     auto& group = collides ? scene.colliding : scene.free;
-    if (group.size() < kPostures) group.push_back(posture);
-    if (collides || scene.grasps.size() == wanted) continue;
+    if (group.size() < wanted) group.push_back(posture);
+    if (collides || scene.grasps.size() == wanted_grasps) continue;
     const EvaluatedGrasp closed = CloseAndJudge(
         scene.hand, posture.X_OH, posture.q, scene.solid, scene.parameters);
     if (closed.ok()) scene.grasps.push_back(closed.grasp);

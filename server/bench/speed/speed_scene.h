@@ -20,10 +20,11 @@ struct SpeedScene {
   std::vector<Grasp> grasps;                 ///< Stable ones.
 };
 
-/** Postures of the hand about the object, drawn at random: 64 of each kind.
- Deterministic.
- @param grasps  Whether stable grasps are looked for, too. */
+/** Postures of the hand about the object, drawn at random. Deterministic.
+ @param postures  How many free ones, and how many that collide.
+ @param grasps  How many stable grasps. */
 SpeedScene MakeSpeedScene(std::shared_ptr<const HandModel> hand,
-                          const TriangleMesh& mesh_O, bool grasps = true);
+                          const TriangleMesh& mesh_O, int postures = 64,
+                          int grasps = 64);
 
 }  // namespace graspdb
