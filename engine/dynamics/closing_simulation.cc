@@ -427,10 +427,14 @@ class ClosingRun {
 
   // How far the object is from where it was, and whether that is too far.
   bool IsLost(const State& start, double& shift, double& turn) const {
-    shift = std::max(shift, (state_.p_WC - start.p_WC).norm());
-    turn =
-        std::max(turn, CalcRotationAngle(start.R_WO.transpose() * state_.R_WO));
-    return !(shift < parameters_.max_shift && turn < parameters_.max_turn);
+    const double shift_now = (state_.p_WC - start.p_WC).norm();
+    const double turn_now =
+        CalcRotationAngle(start.R_WO.transpose() * state_.R_WO);
+    shift = std::max(shift, shift_now);
+    turn = std::max(turn, turn_now);
+    // What is no number any more is lost, too.
+    return !(shift_now < parameters_.max_shift &&
+             turn_now < parameters_.max_turn);
   }
 
   bool Withstands(Push which) {

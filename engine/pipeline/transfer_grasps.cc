@@ -178,7 +178,12 @@ class Transferrer {
     if (found_ >= *request_.enough || climb == replan.climb_samples) return;
     std::vector<int> unsure;
     for (int i = 0; i < tried; ++i) {
-      if (FindGrasp(records[i]) && !IsSure(records[i])) unsure.push_back(i);
+      const bool kept_free =
+          records[i].transfer != TransferOutcome::kNotKeptFree &&
+          records[i].assembly != TransferOutcome::kNotKeptFree;
+      if (FindGrasp(records[i]) ? !IsSure(records[i]) : !kept_free) {
+        unsure.push_back(i);
+      }
     }
     std::stable_sort(unsure.begin(), unsure.end(), [&](int a, int b) {
       return records[a].robust.gripped > records[b].robust.gripped;
@@ -198,6 +203,7 @@ class Transferrer {
           int climb_samples, double end, TransferResult& result) {
     const auto count = static_cast<int>(order.size());
     std::vector<TransferRecord> tried(order.size());
+    std::vector<char> whole(order.size(), 0);
     std::atomic<bool> complete{true};
     const double begin = std::exchange(share_, end);
     const int last = ParallelUntil(
@@ -207,10 +213,15 @@ class Transferrer {
           tried[i].source_grasp = records[order[i]].source_grasp;
           TransferOne(tried[i], climb_samples,
                       [&] { return wanted() && !context_.Cancelled(); });
-          if (context_.Cancelled()) complete = false;
+          whole[i] = context_.Cancelled() ? 0 : 1;
+          if (whole[i] == 0) complete = false;
         },
         [&](int i) {
           TransferRecord& record = records[order[i]];
+          // What was cut short does not replace what there is.
+          if (whole[i] == 0 && FindGrasp(record)) return false;
+          tried[i].transfer_seconds += record.transfer_seconds;
+          tried[i].assembly_seconds += record.assembly_seconds;
           record = std::move(tried[i]);
           if (request_.on_record) request_.on_record(order[i], record);
           if (IsSure(record)) ++found_;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <set>
 
 #include "server/codec/input_json.h"
 #include "server/codec/record_json.h"
@@ -87,7 +88,10 @@ void JobRunner::AddLiveState(StoredJob& job) const {
   job.stage = live.stage;
   job.progress = live.progress;
   if (job.kind == JobKind::kTransfer) {
-    job.grasps_found = static_cast<int64_t>(live.grasps.size());
+    // One that was improved is there twice.
+    std::set<std::string> ids;
+    for (const LiveGrasp& grasp : live.grasps) ids.insert(grasp.id);
+    job.grasps_found = static_cast<int64_t>(ids.size());
   }
   if (live.progress < kLeastProgressForEta) return;
   const std::chrono::duration<double> elapsed = Clock::now() - live.started;
@@ -122,6 +126,7 @@ Result<StoredJob> JobRunner::Cancel(const std::string& id) {
 
 void JobRunner::Work(bool slow) {
   LowerThreadPriority();
+  StartHelperThreads(service_.options().threads);
   while (true) {
     uint64_t seen = 0;
     {

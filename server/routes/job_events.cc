@@ -73,7 +73,7 @@ std::string JobEvents::DescribeFoundGrasps(const StoredJob& job) {
   std::string events;
   for (const auto& [id, json] : service_.ReadLiveGrasps(job.id, told_)) {
     ++told_;
-    sent_.insert(id);
+    sent_[id] = json;
     events += WriteEvent("grasp", json);
   }
   return events;
@@ -89,9 +89,12 @@ std::string JobEvents::DescribeStoredGrasps(const StoredJob& job) {
   if (!answer) return "";
   std::string events;
   for (const StoredGrasp& grasp : answer->grasps) {
-    if (!sent_.insert(grasp.id).second) continue;
+    std::string json = ToJson(grasp, *answer->hand);
+    std::string& sent = sent_[grasp.id];
+    if (sent == json) continue;
     ++told_;
-    events += WriteEvent("grasp", ToJson(grasp, *answer->hand));
+    events += WriteEvent("grasp", json);
+    sent = std::move(json);
   }
   return events;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string>
 
@@ -40,7 +40,8 @@ class JobEvents {
   const std::stop_token stop_;
   std::string run_;  // When this attempt at the job began …
   size_t told_{0};   // … and how many of its grasps the client has.
-  std::set<std::string> sent_;  // Those that it got here, by id.
+  // What it got here of each grasp, by id: one may be improved.
+  std::map<std::string, std::string> sent_;
   bool first_{true};
   bool ended_{false};
   Clock::time_point last_{};

@@ -12,7 +12,6 @@
 
 #include "server/config.h"
 #include "server/http/http_server.h"
-#include "server/jobs/low_priority.h"
 #include "server/routes/routes.h"
 
 namespace graspdb {
@@ -93,8 +92,7 @@ int RunServer(Service& service, const ServerConfig& config) {
   routes.max_event_streams = static_cast<int>(config.http_threads) / 2;
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   routes.work_slots = std::make_shared<WorkSlots>(
-      std::max(1, cores), static_cast<int>(config.http_threads) / 2);
-  const LowPriorityHelpers helpers;
+      std::max(1, cores), static_cast<int>(config.http_threads) / 4);
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());

@@ -19,6 +19,7 @@ Result<std::shared_ptr<void>> WorkSlots::Take(const std::stop_token& stop) {
     }
   }
   --free_;
+  lock.unlock();
   return std::shared_ptr<void>(nullptr, [this](void*) { GiveBack(); });
 }
 

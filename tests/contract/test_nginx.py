@@ -53,9 +53,10 @@ class Front:
                 time.sleep(0.05)
         raise RuntimeError((folder / "error.log").read_text())
 
-    def send(self, data, seconds=5, pause=None):
+    def send(self, data, seconds=5, address="127.0.0.1"):
         """All that comes back on one connection until it closes or is silent."""
-        with socket.create_connection(("127.0.0.1", self.port), seconds) as link:
+        with socket.create_connection(("127.0.0.1", self.port), seconds,
+                                      source_address=(address, 0)) as link:
             link.settimeout(seconds)
             answer = b""
             try:
@@ -191,19 +192,15 @@ def test_slow_clients_do_not_slow_others(front):
 
     dripping = threading.Thread(target=drip)
     dripping.start()
-    # The slow ones share an address with us, which may have 64 connections.
-    answered = 0
+    # Another client, since one address may not have as many connections.
     for _ in range(50):
-        found = statuses(front.send(b"GET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"))
-        answered += found in ([200], [429])
-        assert found in ([200], [429]), found
+        assert statuses(front.send(
+            b"GET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n",
+            address="127.0.0.2")) == [200]
     stop.set()
     dripping.join()
     for link in slow:
         link.close()
-    assert answered == 50
-    time.sleep(0.2)
-    assert requests.get(front.url + "/healthz", timeout=5).status_code == 200
 
 
 def test_whoever_asks_too_much_is_told_to_wait(front):

@@ -1,8 +1,8 @@
 // Runs a fuzz target on its seeds, on the inputs of a folder (each was a
 // finding once) and on mutants of all of them, the same ones every time.
 //
-//   fuzz_json CORPUS [MUTANTS]
-//   fuzz_json --write-seeds FOLDER     for libFuzzer to set out from
+//   fuzz_json_replay CORPUS [MUTANTS]
+//   fuzz_json_replay --write-seeds FOLDER     for libFuzzer to set out from
 
 #include <algorithm>
 #include <array>
@@ -119,7 +119,9 @@ int Main(int argc, char** argv) {
       return inputs[static_cast<size_t>(
           random.NextIndex(static_cast<int>(inputs.size())))];
     };
-    Run(Mutate(choose(), choose(), random));
+    const std::string& one = choose();
+    const std::string& other = choose();
+    Run(Mutate(one, other, random));
   }
   std::printf("%zu inputs, %d mutants\n", inputs.size(), mutants);
   return 0;

@@ -30,6 +30,11 @@ describe('grasps that are found', () => {
   it('count once, however often they come', () => {
     expect([a, b, a].reduce<readonly Grasp[]>(addGrasp, [])).toHaveLength(2);
   });
+
+  it('are as they came last', () => {
+    const improved = withEpsilon('a', 0.4);
+    expect([a, b, improved].reduce<readonly Grasp[]>(addGrasp, [])).toEqual([improved, b]);
+  });
 });
 
 describe('contact pairs', () => {

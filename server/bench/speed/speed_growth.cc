@@ -94,7 +94,7 @@ class GrowthBench {
   void GrowGrasps() {
     const SpeedScene scene = MakeSpeedScene(hand_, order_.mesh);
     GrowthCurve judge{
-        "closing, contacts and eps, both cores", "grasps", "s", {}, {}};
+        "closing, contacts and eps, all cores", "grasps", "s", {}, {}};
     for (const int count : order_.grasps) {
       const double start = Now();
       ParallelFor(count, [&](int i) {

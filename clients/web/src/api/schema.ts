@@ -591,7 +591,7 @@ export interface paths {
         };
         /**
          * A job as it goes on, as server-sent events.
-         * @description Events are `job`, whose data is the job as GET /v1/jobs/{id} answers it, at first and whenever it has changed; and `grasp`, whose data is a grasp of the stage asked for, as soon as a transfer has found it and before it is stored. The stream ends with the job. An event's id says how far one has come: a client that comes back sends it as Last-Event-ID and gets what is new, except that a grasp may come again, of the same id, when the job has ended or begun anew meanwhile.
+         * @description Events are `job`, whose data is the job as GET /v1/jobs/{id} answers it, at first and whenever it has changed; and `grasp`, whose data is a grasp of the stage asked for, as soon as a transfer has found it and before it is stored. The stream ends with the job. An event's id says how far one has come: a client that comes back sends it as Last-Event-ID and gets what is new. A grasp may come again, of the same id: improved, or when the job has ended or begun anew meanwhile; the last one counts.
          */
         readonly get: operations["streamJob"];
         readonly put?: never;

@@ -63,7 +63,8 @@ export function useGraspPages(filters: GraspFilters): GraspPages {
     grasps,
     problem: first.problem ?? further?.problem ?? null,
     loading: first.loading && first.value === null,
-    loadMore: cursor === null || further?.loading === true ? null : loadMore,
-    reload: first.reload,
+    // What is shown while others load belongs to the filters before.
+    loadMore: cursor === null || first.loading || further?.loading === true ? null : loadMore,
+    reload: further?.problem ? loadMore : first.reload,
   };
 }

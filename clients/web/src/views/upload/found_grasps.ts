@@ -1,10 +1,10 @@
 import type { Grasp } from '../../api/types';
 
 /** Adds a grasp to those found so far, best first. One that comes again, as it
- * may after a reconnection, changes nothing. */
+ * may when it was improved, takes the place of the one before. */
 export function addGrasp(found: readonly Grasp[], grasp: Grasp): readonly Grasp[] {
-  if (found.some(({ id }) => id === grasp.id)) return found;
-  const place = found.findIndex(({ quality }) => quality.epsilon < grasp.quality.epsilon);
-  const end = place < 0 ? found.length : place;
-  return [...found.slice(0, end), grasp, ...found.slice(end)];
+  const others = found.filter(({ id }) => id !== grasp.id);
+  const place = others.findIndex(({ quality }) => quality.epsilon < grasp.quality.epsilon);
+  const end = place < 0 ? others.length : place;
+  return [...others.slice(0, end), grasp, ...others.slice(end)];
 }
