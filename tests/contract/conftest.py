@@ -39,6 +39,15 @@ def server(binary, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def copy_database(binary, server, world):
+    """Makes a copy of the database with the learned mug."""
+    def copy(path):
+        subprocess.run([binary, "backup", str(path), "--db", str(server.database)],
+                       check=True, stdout=subprocess.DEVNULL)
+    return copy
+
+
+@pytest.fixture(scope="session")
 def contract(server):
     return Contract(server.url)
 

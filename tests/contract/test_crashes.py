@@ -46,11 +46,10 @@ class Phoenix:
 
 
 @pytest.fixture
-def phoenix(binary, server, world, tmp_path):
+def phoenix(binary, copy_database, tmp_path):
     """On a copy of the database with a learned mug."""
     database = tmp_path / "copy.db"
-    subprocess.run([binary, "backup", str(database), "--db", str(server.database)], check=True,
-                   stdout=subprocess.DEVNULL)
+    copy_database(database)
     bird = Phoenix(binary, database, tmp_path)
     yield bird
     assert "event=internal" not in bird.live.log(), bird.live.log()

@@ -7,7 +7,6 @@ import os
 import pathlib
 import random
 import re
-import subprocess
 import threading
 import time
 
@@ -15,8 +14,7 @@ import numpy
 import pytest
 import requests
 
-from conftest import QUICK
-from contract_client import ROOT, Contract
+from contract_client import ROOT
 from live_server import LiveServer
 
 CLIENTS = 64
@@ -39,28 +37,13 @@ def read_process(pid):
 
 
 @pytest.fixture(scope="module")
-def busy(binary, tmp_path_factory):
+def busy(binary, copy_database, tmp_path_factory):
     """A server of its own, with a mug that has been learned."""
     folder = tmp_path_factory.mktemp("load")
     database = folder / "load.db"
-    (folder / "hands").symlink_to(ROOT / "data" / "hands")
-    subprocess.run([binary, "populate", str(folder), "--db", str(database)], check=True,
-                   timeout=400)
+    copy_database(database)
     server = LiveServer(binary, database, folder, "--max-queued-jobs", str(QUEUE),
                         "--http-threads", "128")
-    contract = Contract(server.url)
-    mug = ROOT / "data" / "mug"
-    contract.call("postCategory", 201, body={
-        "name": "mug", "title": "Mugs", "parts": [{"label": "body"}, {"label": "handle"}],
-        "topology": [["body", "handle"]]})
-    example = contract.call(
-        "postExample", 200, path={"name": "mug"}, query={"learn": "false"},
-        headers={"Prefer": "wait=150"},
-        files={"mesh": ("classic.obj", (mug / "classic.obj").read_bytes()),
-               "labels": ("l.json", (mug / "classic.labels.json").read_bytes())})
-    contract.call("postGraspSpaces", 200, path={"id": example["id"]},
-                  headers={"Prefer": "wait=300"}, timeout=320,
-                  body={"parameters": QUICK, "parts": ["body"]})
     yield server
     assert server.alive(), server.log()
     assert server.stop() == 0, server.log()

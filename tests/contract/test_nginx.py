@@ -17,7 +17,6 @@ import requests
 from contract_client import ROOT
 
 NGINX = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
-pytestmark = pytest.mark.skipif(NGINX is None, reason="no nginx; .ci/install gets it")
 
 
 def find_free_port():
@@ -28,6 +27,7 @@ def find_free_port():
 
 class Front:
     def __init__(self, folder, behind):
+        assert NGINX, "no nginx; .ci/install gets it"
         self.port = find_free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         text = (ROOT / "docker" / "nginx.conf").read_text()

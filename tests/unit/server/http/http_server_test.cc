@@ -21,6 +21,9 @@
 namespace graspdb {
 namespace {
 
+// What the body of /endless is made of.
+constexpr char kOnAndOn[] = "on and on and ";
+
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
@@ -137,9 +140,12 @@ class HttpServerTest : public testing::Test {
                 [gone = &gone_](const HttpRequest&) {
                   HttpResponse response = Text("");
                   response.next_piece =
-                      [place = std::shared_ptr<void>(nullptr, [gone](void*) {
-                         *gone = true;
-                       })] { return std::optional(std::string(100'000, 'x')); };
+                      [place = std::shared_ptr<void>(
+                           nullptr, [gone](void*) { *gone = true; })] {
+                        std::string piece;
+                        while (piece.size() < 100'000) piece += kOnAndOn;
+                        return std::optional(piece);
+                      };
                   return response;
                 }});
     router.Add({"GET", "/fail", BodyKind::kNone,
@@ -244,7 +250,7 @@ TEST_F(HttpServerTest, AnEndlessBodyEndsWhenItsReaderGoes) {
   {
     Client client(port_);
     client.Send("GET /endless HTTP/1.1\r\nHost: h\r\n\r\n");
-    EXPECT_THAT(client.ReadUntil("xxx"), EndsWith("xxx"));
+    EXPECT_THAT(client.ReadUntil(kOnAndOn), EndsWith(kOnAndOn));
     EXPECT_FALSE(gone_);
   }
   while (!gone_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
