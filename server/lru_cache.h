@@ -16,8 +16,7 @@ namespace graspdb {
 struct CacheCounts {
   int64_t hits{0};
   int64_t misses{0};
-  int64_t entries{0};  ///< Now …
-  int64_t bytes{0};    ///< … and what they take.
+  int64_t bytes{0};  ///< What is remembered takes.
 };
 
 /** Values by key; when they take more than so many bytes, those go that nobody
@@ -58,9 +57,7 @@ class LruCache {
 
   CacheCounts counts() const {
     const std::lock_guard lock(mutex_);
-    CacheCounts counts = counts_;
-    counts.entries = static_cast<int64_t>(entries_.size());
-    return counts;
+    return counts_;
   }
 
  private:

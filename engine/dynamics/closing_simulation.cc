@@ -188,6 +188,7 @@ class ClosingRun {
       if (CalcTurningSpeed(contacts.link) > 0.0) return 0.0;
     }
     const double worth = kLeapSteps * parameters_.time_step;
+    if (seconds < worth) return 0.0;
     const RigidTransform X_OH = CalcObjectPose().Inverse() * X_WH_;
     const auto X_HL = CalcLinkPoses(hand_.model(), state_.q);
     for (int link = 0; link < hand_.model().num_links(); ++link) {

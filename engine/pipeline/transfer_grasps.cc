@@ -22,6 +22,7 @@
 #include "engine/registration/surface_warp.h"
 #include "engine/transfer/contact_map.h"
 #include "engine/transfer/local_replanner.h"
+#include "engine/transfer/open_close.h"
 
 namespace graspdb {
 namespace {

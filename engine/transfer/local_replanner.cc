@@ -412,30 +412,6 @@ class Replanner {
 
 }  // namespace
 
-const char* ToString(TransferOutcome outcome) {
-  switch (outcome) {
-    case TransferOutcome::kSucceeded:
-      return "succeeded";
-    case TransferOutcome::kNoCorrespondence:
-      return "no_correspondence";
-    case TransferOutcome::kPalmCollision:
-      return "palm_collision";
-    case TransferOutcome::kFingerCollision:
-      return "finger_collision";
-    case TransferOutcome::kNoContact:
-      return "no_contact";
-    case TransferOutcome::kUnstable:
-      return "unstable";
-    case TransferOutcome::kTooFar:
-      return "too_far";
-    case TransferOutcome::kUnreachable:
-      return "unreachable";
-    case TransferOutcome::kNotKeptFree:
-      return "not_kept_free";
-  }
-  return "unknown";
-}
-
 bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
                   const TransferLimits& limits) {
   const RigidTransform& X_NH = grasp.configuration.X_OH;
@@ -502,28 +478,6 @@ ReplanResult Assemble(const HandShape& hand, const TransferTask& task,
   }
   return Replanner(hand, on_whole, whole, parameters, seed, options)
       .Run(starts);
-}
-
-double CalcOpenCloseEpsilon(const HandShape& hand, const TransferTask& task,
-                            const Solid& solid, const Parameters& parameters) {
-  const HandModel& model = hand.model();
-  Eigen::VectorXd motors = model.CalcActuators(task.q_pregrasp);
-  // Straighten each finger that collides.
-  const auto X_HL = CalcLinkPoses(model, model.CalcCoupledJoints(motors));
-  for (int a = 0; a < model.num_actuators(); ++a) {
-    if (!model.actuators()[a].closes) continue;
-    for (size_t k = 0; k < model.actuators()[a].joints.size(); ++k) {
-      for (const int link : hand.chain_links(a, static_cast<int>(k))) {
-        if (hand.link(link) &&
-            LinkCollides(*hand.link(link), task.X_NH * X_HL[link], solid)) {
-          motors[a] = model.actuators()[a].lower;
-        }
-      }
-    }
-  }
-  const EvaluatedGrasp grasp = CloseAndJudge(
-      hand, task.X_NH, model.CalcCoupledJoints(motors), solid, parameters);
-  return grasp.ok() ? grasp.grasp.quality.epsilon : 0.0;
 }
 
 }  // namespace graspdb

@@ -15,7 +15,8 @@ Result<std::shared_ptr<void>> WorkSlots::Take(const std::stop_token& stop) {
         given_back_.wait(lock, stop, [this] { return free_ > 0; });
     --waiting_;
     if (!found) {
-      return Error{ErrorCode::kCancelled, "The server is stopping."};
+      return Error{ErrorCode::kOverloaded, "The server is stopping.",
+                   "send it again when it is back"};
     }
   }
   --free_;

@@ -20,8 +20,7 @@ class WorkSlots {
 
   /** Waits for a slot, which is held until the answer is dropped; this must
    outlive it.
-   @retval kOverloaded when too many wait already.
-   @retval kCancelled once it was asked to stop. */
+   @retval kOverloaded when too many wait already, or it was asked to stop. */
   Result<std::shared_ptr<void>> Take(const std::stop_token& stop);
 
  private:

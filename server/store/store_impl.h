@@ -114,6 +114,12 @@ auto ListByName(Database& database, const std::string& table,
                   [](const auto& last) { return last.name; });
 }
 
+/** For a hint: which names a table has, the first twenty. */
+std::string ListNames(Database& database, const std::string& table);
+/** How many rows there are: `from_where` ends with a condition on ?. */
+int64_t CountOf(Database& database, const std::string& from_where,
+                const std::string& value);
+
 StoredObject ReadObject(Database& database, const std::string& id);
 /** Adds the parts of a stored object that has none. */
 void InsertParts(Database& database, const StoredObject& object,

@@ -1,6 +1,5 @@
 #include "server/bench/speed/server_process.h"
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -21,6 +20,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPoll{2};
 constexpr std::chrono::seconds kLongestStart{60};
+constexpr std::chrono::seconds kLongestEnd{30};
 
 Error MakeStartError(const std::string& why) {
   return Error{ErrorCode::kInternal, "The server does not start: " + why + "."};
@@ -28,20 +28,24 @@ Error MakeStartError(const std::string& why) {
 
 }  // namespace
 
+void RemoveDatabase(const std::string& path) {
+  for (const char* suffix : {"", "-wal", "-shm", ".lock"}) {
+    std::error_code none;
+    std::filesystem::remove(path + suffix, none);
+  }
+}
+
 Result<std::unique_ptr<ServerProcess>> ServerProcess::Start(
     const std::string& db, const std::vector<std::string>& options) {
   const std::string port_file = db + ".port";
   const std::string log = db + ".log";
-  std::filesystem::remove(port_file);
+  std::error_code code;
+  std::filesystem::remove(port_file, code);
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
+  if (code) return MakeStartError(code.message());
   std::vector<std::string> words{
-      std::filesystem::read_symlink("/proc/self/exe").string(),
-      "serve",
-      "--db",
-      db,
-      "--port",
-      "0",
-      "--port-file",
-      port_file};
+      self.string(), "serve", "--db",        db,
+      "--port",      "0",     "--port-file", port_file};
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -82,7 +86,10 @@ Result<std::unique_ptr<ServerProcess>> ServerProcess::Start(
 ServerProcess::~ServerProcess() {
   if (pid_ < 0) return;
   kill(pid_, SIGTERM);
-  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  const auto asked = Clock::now();
+  while (waitpid(pid_, nullptr, WNOHANG) == 0) {
+    if (Clock::now() - asked > kLongestEnd) kill(pid_, SIGKILL);
+    std::this_thread::sleep_for(kPoll);
   }
 }
 

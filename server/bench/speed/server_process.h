@@ -10,6 +10,9 @@
 
 namespace graspdb {
 
+/** Removes a database file that nobody has open, with what lies beside it. */
+void RemoveDatabase(const std::string& path);
+
 /** This very program, serving a database in a process of its own. */
 class ServerProcess {
  public:

@@ -10,6 +10,7 @@
 
 #include "engine/grasp_engine.h"
 #include "server/bench/bench_items.h"
+#include "server/bench/speed/server_process.h"
 #include "server/bench/speed/speed_growth.h"
 #include "server/bench/speed/speed_primitives.h"
 #include "server/bench/speed/speed_requests.h"
@@ -54,7 +55,7 @@ class SpeedBench {
         open_(open),
         context_(context),
         decoder_(order.decoder),
-        db_(MakeLearningPath(order.out, order.parameters)) {}
+        db_(fs::path(order.out) / "speed.db") {}
 
   Result<Json> Run() {
     std::error_code code;
@@ -68,11 +69,8 @@ class SpeedBench {
     {
       SubContext part(context_, "primitives", 0.3, 0.4);
       part.context().ReportProgress("", 0.0);
-      report_["primitives"] = Json::array();
-      for (const SpeedRow& row :
-           MeasurePrimitives(hand_, meshes_, stopwatch())) {
-        report_["primitives"].push_back(EncodeSpeedRow(row));
-      }
+      report_["primitives"] =
+          EncodeSpeedRows(MeasurePrimitives(hand_, meshes_, stopwatch()));
     }
     GRASPDB_TRY_VOID(RunStages());
     GRASPDB_TRY_VOID(RunRequests());
@@ -96,14 +94,19 @@ class SpeedBench {
 
   // What was learned, and one novel object in several resolutions.
   Result<void> Prepare() {
-    GRASPDB_TRY(service, open_(db_));
+    GRASPDB_TRY(learned,
+                open_(MakeLearningPath(order_.out, order_.parameters)));
     PopulateOrder populate;
     populate.folder = order_.data;
     populate.categories = {order_.category};
     populate.parameters = order_.parameters;
     populate.seed = order_.seed;
     SubContext learning(context_, "learn", 0.0, 0.3);
-    GRASPDB_TRY_VOID(Populate(*service, populate, learning.context()));
+    GRASPDB_TRY_VOID(Populate(*learned, populate, learning.context()));
+    // What is measured leaves that as it is.
+    RemoveDatabase(db_);
+    GRASPDB_TRY_VOID(learned->store().WriteBackup(db_));
+    GRASPDB_TRY(service, open_(db_));
     GRASPDB_TRY(hand, service->FindHandModel(kDefaultHand));
     hand_ = hand;
 
@@ -139,10 +142,7 @@ class SpeedBench {
     SubContext part(context_, "stages", 0.4, 0.6);
     GRASPDB_TRY(rows,
                 MeasureStages(*service, decoder_, stages, part.context()));
-    report_["stages"] = Json::array();
-    for (const SpeedRow& row : rows) {
-      report_["stages"].push_back(EncodeSpeedRow(row));
-    }
+    report_["stages"] = EncodeSpeedRows(rows);
     return {};
   }
 

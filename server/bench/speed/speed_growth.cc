@@ -109,11 +109,8 @@ class GrowthBench {
   }
 
   Result<void> GrowStoredGrasps() {
-    namespace fs = std::filesystem;
-    const std::string grown = fs::path(order_.out) / "grown.db";
-    for (const char* suffix : {"", "-wal", "-shm", ".lock"}) {
-      fs::remove(grown + suffix);
-    }
+    const std::string grown = std::filesystem::path(order_.out) / "grown.db";
+    RemoveDatabase(grown);
     {
       GRASPDB_TRY(service, open_(order_.db));
       GRASPDB_TRY_VOID(service->store().WriteBackup(grown));

@@ -18,6 +18,12 @@ Json EncodeSpeedRow(const SpeedRow& row) {
   return json;
 }
 
+Json EncodeSpeedRows(const std::vector<SpeedRow>& rows) {
+  Json json = Json::array();
+  for (const SpeedRow& row : rows) json.push_back(EncodeSpeedRow(row));
+  return json;
+}
+
 Json EncodeGrowthCurve(const GrowthCurve& curve) {
   return {{"name", curve.name},
           {"x_label", curve.x_label},

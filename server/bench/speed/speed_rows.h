@@ -28,6 +28,7 @@ struct SpeedRow {
 };
 
 Json EncodeSpeedRow(const SpeedRow& row);
+Json EncodeSpeedRows(const std::vector<SpeedRow>& rows);
 
 /** Points of a growth curve: {"name", "x_label", "y_label", "x", "y"}. */
 struct GrowthCurve {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/transfer/open_close.h"
 #include "tests/support/workshop.h"
 
 namespace graspdb {

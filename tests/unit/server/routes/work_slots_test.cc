@@ -50,7 +50,7 @@ TEST(WorkSlots, WhoeverWaitsHearsOfTheEnd) {
   std::thread waiting([&] {
     const auto refused = slots.Take(end.get_token());
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::kCancelled);
+    EXPECT_EQ(refused.error().code, ErrorCode::kOverloaded);
   });
   end.request_stop();
   waiting.join();
