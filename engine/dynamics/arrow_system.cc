@@ -9,8 +9,7 @@ namespace graspdb {
 
 ArrowSystem::ArrowSystem(int num_joints,
                          const std::vector<std::pair<int, int>>& couples)
-    : before_(static_cast<size_t>(num_joints)),
-      coupling_(6, num_joints),
+    : coupling_(6, num_joints),
       joints_(num_joints, num_joints),
       right_(num_joints) {
   std::vector<int> group(static_cast<size_t>(num_joints));
@@ -20,13 +19,16 @@ ArrowSystem::ArrowSystem(int num_joints,
     const int to = group[static_cast<size_t>(k)];
     std::replace(group.begin(), group.end(), from, to);
   }
+  std::vector<std::vector<int>> before(static_cast<size_t>(num_joints));
   for (int k = 0; k < num_joints; ++k) {
     for (int l = 0; l < k; ++l) {
       if (group[static_cast<size_t>(l)] == group[static_cast<size_t>(k)]) {
-        before_[static_cast<size_t>(k)].push_back(l);
+        before[static_cast<size_t>(k)].push_back(l);
       }
     }
   }
+  before_ =
+      std::make_shared<const std::vector<std::vector<int>>>(std::move(before));
   SetZero();
 }
 
@@ -44,7 +46,7 @@ void ArrowSystem::Solve(Eigen::VectorXd& x) {
   for (int k = n - 1; k >= 0; --k) {
     const double inverse = 1.0 / joints_(k, k);
     const Vector6 scaled = inverse * coupling_.col(k);
-    const std::vector<int>& before = before_[static_cast<size_t>(k)];
+    const std::vector<int>& before = (*before_)[static_cast<size_t>(k)];
     for (const int l : before) {
       const double factor = inverse * joints_(k, l);
       if (factor == 0.0) continue;
@@ -63,7 +65,7 @@ void ArrowSystem::Solve(Eigen::VectorXd& x) {
   x.head<6>() = body;
   for (int k = 0; k < n; ++k) {
     double rest = right_[k] - coupling_.col(k).dot(body);
-    for (const int l : before_[static_cast<size_t>(k)]) {
+    for (const int l : (*before_)[static_cast<size_t>(k)]) {
       rest -= joints_(k, l) * x[6 + l];
     }
     x[6 + k] = rest / joints_(k, k);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,8 @@ class ArrowSystem {
   void Solve(Eigen::VectorXd& x);
 
  private:
-  std::vector<std::vector<int>> before_;  // Per joint, those of its group < k.
+  // Per joint, those of its group < k; copies share it.
+  std::shared_ptr<const std::vector<std::vector<int>>> before_;
   Matrix6 body_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> coupling_;
   Eigen::MatrixXd joints_;

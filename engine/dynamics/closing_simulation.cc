@@ -299,22 +299,21 @@ class ClosingRun {
   void Step(const Eigen::Vector3d& push) {
     FindTouches();
     const double dt = parameters_.time_step;
-    ArrowSystem& system = free_;
-    system.SetZero();
-    system.body().topLeftCorner<3, 3>().diagonal().setConstant(
-        parameters_.mass / dt);
-    system.body().bottomRightCorner<3, 3>() =
+    free_.SetZero();
+    free_.body().topLeftCorner<3, 3>().diagonal().setConstant(parameters_.mass /
+                                                              dt);
+    free_.body().bottomRightCorner<3, 3>() =
         parameters_.mass / dt * state_.R_WO * solid_.mass().gyration *
         state_.R_WO.transpose();
-    system.body_right() = system.body() * state_.velocity.head<6>();
-    system.body_right().head<3>() += push;
+    free_.body_right() = free_.body() * state_.velocity.head<6>();
+    free_.body_right().head<3>() += push;
     for (size_t k = 0; k < joints_.size(); ++k) {
       const auto& joint = joints_[k];
       const auto i = static_cast<int>(k);
       const double lead =
           state_.motors[static_cast<Eigen::Index>(k)] - state_.q[joint.joint];
-      double& weight = system.joint(i, i);
-      double& right = system.right(i);
+      double& weight = free_.joint(i, i);
+      double& right = free_.right(i);
       weight = joint.armature / dt + joint.damping;
       right = joint.armature / dt * state_.velocity[6 + i];
       if (std::abs(joint.stiffness * lead) < joint.holding_torque) {

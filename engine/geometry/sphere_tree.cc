@@ -12,8 +12,14 @@ namespace graspdb {
 namespace {
 
 constexpr int kLanes = 4;
-// What rounding a centre to single precision moves it by at most, m.
-constexpr double kRounding = 1e-7;
+// What rounding to single precision moves a point by, a share of how far it is
+// from the origin.
+constexpr double kRounding = 2e-7;
+
+// The radius of a ball around the rounded centre.
+float CalcRoundedRadius(const Eigen::Vector3d& center, double radius) {
+  return static_cast<float>(radius + kRounding * (center.norm() + radius));
+}
 
 }  // namespace
 
@@ -27,7 +33,7 @@ SphereTree::SphereTree(const TriangleMesh& mesh_L, double spacing) {
     // A lone leaf: the root has no other child.
     Group& root = groups_[0];
     root.centers.Set(0, leaf_balls_[0].p);
-    root.radii[0] = static_cast<float>(leaf_balls_[0].radius + kRounding);
+    root.radii[0] = CalcRoundedRadius(leaf_balls_[0].p, leaf_balls_[0].radius);
     root.children[0] = ~0;
     group_balls_[0] = leaf_balls_[0];
   }
@@ -186,7 +192,8 @@ int SphereTree::Build(std::vector<Ball>& balls, int first, int count) {
     Group& group = groups_[static_cast<size_t>(self)];
     group.children[lane] = child;
     group.centers.Set(static_cast<int>(lane), BallOf(child).p);
-    group.radii[lane] = static_cast<float>(BallOf(child).radius + kRounding);
+    group.radii[lane] =
+        CalcRoundedRadius(BallOf(child).p, BallOf(child).radius);
   }
   return self;
 }

@@ -12,7 +12,7 @@
 
 namespace graspdb {
 
-/** Which least distances matter, m. */
+/** Which least distances matter, m; `enough` is at most `most`. */
 struct DistanceRange {
   double enough{-1e300};  ///< Once one below this is known, any such is told.
   double most{1e300};     ///< If none is below this, this is told.
@@ -94,10 +94,10 @@ class SphereTree {
       const Floats4 bounds = distance(group.centers) - group.radii;
       // The last child goes first onto the stack: probes come in order.
       for (int lane = 3; lane >= 0; --lane) {
-        if (bounds[lane] > limit) {
-          others = std::min(others, double{bounds[lane]});
-        } else {
+        if (bounds[lane] <= limit) {
           stack[size++] = group.children[lane];
+        } else {
+          others = std::min(others, double{bounds[lane]});
         }
       }
     }
@@ -162,7 +162,7 @@ class SphereTree {
       const int first = size;
       for (int lane = 0; lane < 4; ++lane) {
         const double bound = bounds[lane];
-        if (bound >= best) continue;
+        if (!(bound < best)) continue;  // Absent, too, or no number.
         // Far enough for its size: looking closer would gain little.
         if (2.0F * group.radii[lane] <= d[lane]) {
           best = bound;

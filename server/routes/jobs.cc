@@ -1,4 +1,3 @@
-#include <atomic>
 #include <memory>
 
 #include "server/codec/record_json.h"
@@ -42,29 +41,12 @@ Result<HttpResponse> DeleteJob(Service& service, const HttpRequest& request) {
   return MakeJsonResponse(200, ToJson(job));
 }
 
-/** Counts what is open, up to a limit. */
-class Gate {
- public:
-  explicit Gate(int limit) : left_(limit) {}
-  /** A place, given back with its last copy; null when all are taken. */
-  static std::shared_ptr<void> Enter(const std::shared_ptr<Gate>& gate) {
-    if (gate->left_.fetch_sub(1) <= 0) {
-      ++gate->left_;
-      return nullptr;
-    }
-    return {gate.get(), [gate](void*) { ++gate->left_; }};
-  }
-
- private:
-  std::atomic<int> left_;
-};
-
 Result<HttpResponse> StreamJob(const Service& service,
-                               const std::shared_ptr<Gate>& gate,
+                               const std::shared_ptr<WorkSlots>& slots,
                                const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(job, service.FindJob(request.path_parameters.at("id")));
-  auto place = Gate::Enter(gate);
+  auto place = slots->Take(request.stop);
   if (!place) {
     return Error{ErrorCode::kOverloaded,
                  "As many event streams are open as the server allows.",
@@ -73,7 +55,7 @@ Result<HttpResponse> StreamJob(const Service& service,
   HttpResponse response;
   response.content_type = "text/event-stream";
   response.headers.emplace_back("Cache-Control", "no-store");
-  response.next_piece = [place = std::move(place),
+  response.next_piece = [slots, place = *std::move(place),
                          events = std::make_shared<JobEvents>(
                              service, std::move(job),
                              std::string(request.FindHeader("last-event-id")),
@@ -93,12 +75,12 @@ void AddJobRoutes(Router& router, Service& service,
               [&service](const HttpRequest& request) {
                 return GetJob(service, request);
               }});
-  router.Add(
-      {"GET", "/v1/jobs/{id}/events", BodyKind::kNone,
-       [&service, gate = std::make_shared<Gate>(options.max_event_streams)](
-           const HttpRequest& request) {
-         return StreamJob(service, gate, request);
-       }});
+  router.Add({"GET", "/v1/jobs/{id}/events", BodyKind::kNone,
+              [&service,
+               slots = std::make_shared<WorkSlots>(
+                   options.max_event_streams, 0)](const HttpRequest& request) {
+                return StreamJob(service, slots, request);
+              }});
   router.Add({"DELETE", "/v1/jobs/{id}", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return DeleteJob(service, request);

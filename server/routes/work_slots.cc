@@ -7,7 +7,7 @@ Result<std::shared_ptr<void>> WorkSlots::Take(const std::stop_token& stop) {
   if (free_ == 0) {
     if (waiting_ >= most_waiting_) {
       return Error{ErrorCode::kOverloaded,
-                   "Too many meshes are being worked on.",
+                   "Too many requests of this kind are at work.",
                    "send it again in a moment"};
     }
     ++waiting_;

@@ -9,12 +9,12 @@
 
 namespace graspdb {
 
-/** Lets so many requests compute at once, so that the others are answered
- meanwhile. Thread-safe. */
+/** Lets so many requests of a kind be at work at once, so that the others are
+ answered meanwhile. Thread-safe. */
 class WorkSlots {
  public:
-  /** @param most  That compute at once, > 0. @param most_waiting  That wait for
-   it; each holds a connection. */
+  /** @param most  That are at work at once, > 0. @param most_waiting  That wait
+   for it; each holds a connection. */
   WorkSlots(int most, int most_waiting)
       : free_(most), most_waiting_(most_waiting) {}
 

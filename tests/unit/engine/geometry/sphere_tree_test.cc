@@ -1,6 +1,7 @@
 #include "engine/geometry/sphere_tree.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +79,17 @@ TEST_F(TreeOfABox, TellsNoMoreOfTheMinimumThanTheRangeAsksFor) {
       EXPECT_LT(early, most);
     }
   }
+}
+
+TEST_F(TreeOfABox, EndsWhereADistanceIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const DistanceTo distance{{nan, nan, nan}};
+  EXPECT_GE(tree_.EstimateMinimum(distance), 1e300);
+  EXPECT_GE(tree_.CalcLowerBound(distance), 1e300);
+  int visited = 0;
+  tree_.VisitNear(distance, 0.01,
+                  [&](const Eigen::Vector3d&, double) { ++visited; });
+  EXPECT_EQ(visited, 0);
 }
 
 TEST_F(TreeOfABox, GapBoundOfTwoNeverExceedsTheTruth) {
