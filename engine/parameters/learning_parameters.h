@@ -43,7 +43,7 @@ struct SwarmParameters {
   double acceleration{2.05};
   double max_step{0.02};
   double max_turn{0.35};
-  int patience{6};
+  int patience{3};
   double aimed_share{0.5};
   double uniform_share{0.0};
   bool niches{true};
@@ -53,6 +53,7 @@ struct SwarmParameters {
   int robust_copies{8};
   double grip_weight{10.0};
   double near_share{0.5};
+  bool shun_failed{true};
   int target_grasps{300};
 
   template <class Self, class F>
@@ -91,7 +92,11 @@ struct SwarmParameters {
     f("grip_weight", self.grip_weight,
       ParameterInfo{"1/N", 0, 1e6, "ours: of the residual, beside Eq. (1)"});
     f("near_share", self.near_share,
-      ParameterInfo{"1", 0, 1, "ours: restarts near a grasp that was found"});
+      ParameterInfo{"1", 0, 1,
+                    "ours: restarts near one that was found or nearly so"});
+    f("shun_failed", self.shun_failed,
+      ParameterInfo{"1", 0, 1,
+                    "ours: no particle's best is where a grasp fell through"});
     f("target_grasps", self.target_grasps,
       ParameterInfo{"1", 1, 1e5, "ours: stop when so many distinct are found"});
   }

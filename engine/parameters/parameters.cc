@@ -20,6 +20,7 @@ Parameters MakePaperParameters() {
   p.swarm.min_grip = 0.0;
   p.swarm.grip_weight = 0.0;
   p.swarm.near_share = 0.0;
+  p.swarm.shun_failed = false;
   p.swarm.patience = p.swarm.iterations;
   p.pregrasp.timed = false;
   p.mapping.affine = false;

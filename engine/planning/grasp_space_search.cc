@@ -39,14 +39,21 @@ Velocity CalcDifference(const HandPosture& to, const HandPosture& from) {
           turn.angle() * turn.axis(), to.actuators - from.actuators};
 }
 
+// A grasp that holds on the whole object.
+struct FoundGrasp {
+  Grasp grasp;
+  double gripped{0.0};  // Of its disturbed copies.
+  bool robust{false};   // Only these are kept.
+};
+
 struct Particle {
   HandPosture here;
   Velocity velocity;
   HandPosture best;
   double best_measure{std::numeric_limits<double>::infinity()};
   int niche{0};
-  int stale{0};                // Iterations without improvement.
-  std::optional<Grasp> found;  // In this iteration.
+  int stale{0};                     // Iterations without improvement.
+  std::optional<FoundGrasp> found;  // In this iteration.
 };
 
 class Swarm {
@@ -86,10 +93,10 @@ class Swarm {
         Judge(particle, random.NextBits());
       });
       for (Particle& particle : particles_) {
-        if (particle.found) archive_.Insert(*particle.found);
+        if (particle.found) Keep(*particle.found);
       }
       UpdateNicheBests();
-      SortFoundByNiche();
+      UpdateLeads();
       context.ReportProgress(
           "swarm",
           std::max(
@@ -113,17 +120,18 @@ class Swarm {
     const bool near = random.NextUniform() < swarm_.near_share;
     const bool aimed = random.NextUniform() < swarm_.aimed_share;
     const bool uniform = !aimed && random.NextUniform() < swarm_.uniform_share;
-    if (near && archive_.size() > 0) {
+    if (near && !leads_.empty()) {
       // Any approach that has led to one is as likely as another.
-      const std::vector<int>& niche = found_by_niche_[static_cast<size_t>(
-          random.NextIndex(static_cast<int>(found_by_niche_.size())))];
-      const Grasp& found =
-          archive_.grasps()[static_cast<size_t>(niche[static_cast<size_t>(
-              random.NextIndex(static_cast<int>(niche.size())))])];
-      particle.here =
-          space_.Perturb({found.configuration.X_OH,
-                          hand_.model().CalcActuators(found.q_pregrasp)},
-                         swarm_.max_step, swarm_.max_turn, random);
+      const std::vector<const Grasp*>& niche = leads_[static_cast<size_t>(
+          random.NextIndex(static_cast<int>(leads_.size())))];
+      const Grasp& found = *niche[static_cast<size_t>(
+          random.NextIndex(static_cast<int>(niche.size())))];
+      // Near enough to hold like it, far enough to be another: who knows.
+      const double scale = random.NextUniform();
+      particle.here = space_.Perturb(
+          {found.configuration.X_OH,
+           hand_.model().CalcActuators(found.q_pregrasp)},
+          scale * swarm_.max_step, scale * swarm_.max_turn, random);
     } else if (uniform) {
       particle.here = space_.Sample(random);
     } else if (!aimed && next < seeds_.size()) {
@@ -204,14 +212,14 @@ class Swarm {
     particle.here = next;
   }
 
-  // Closes the fingers; remembers the place if it is the particle's best, and
-  // the grasp if it holds.
+  // Closes the fingers; remembers the grasp if it holds, and the place if it is
+  // the particle's best.
   void Judge(Particle& particle, uint64_t seed) const {
     particle.found.reset();
     ++particle.stale;
-    const HandModel& hand = hand_.model();
-    const Eigen::VectorXd q = hand.CalcCoupledJoints(particle.here.actuators);
-    EvaluatedGrasp evaluated =
+    const Eigen::VectorXd q =
+        hand_.model().CalcCoupledJoints(particle.here.actuators);
+    const EvaluatedGrasp evaluated =
         CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_,
                       Precision::kEstimated);
     if (evaluated.failure == GraspFailure::kPalmCollision ||
@@ -223,6 +231,15 @@ class Swarm {
             ? std::min(kNoGrip, CalcGrip(hand_, evaluated.grasp,
                                          obstacle_.mass(), parameters_))
             : kNoGrip;
+    const bool promising =
+        evaluated.ok() &&
+        (swarm_.min_grip == 0.0 || grip <= parameters_.grip.max_residual);
+    if (promising) {
+      particle.found = FindGrasp(particle.here.X_OH, q, seed);
+      // Others would gather there in vain.
+      const bool kept = particle.found && particle.found->robust;
+      if (!kept && swarm_.shun_failed) return;
+    }
     const double measure =
         CalcHybrid(hand_, evaluated.grasp, part_, parameters_) +
         swarm_.grip_weight * grip;
@@ -231,20 +248,27 @@ class Swarm {
       particle.best = particle.here;
       particle.stale = 0;
     }
-    if (!evaluated.ok() ||
-        (swarm_.min_grip > 0.0 && grip > parameters_.grip.max_residual)) {
-      return;
-    }
-    evaluated = CloseAndJudge(hand_, particle.here.X_OH, q, part_, parameters_);
-    if (!evaluated.ok() || !archive_.Wants(evaluated.grasp)) return;
+  }
+
+  // The grasp that the hand closes to, if it is new and holds on the whole.
+  std::optional<FoundGrasp> FindGrasp(const RigidTransform& X_OH,
+                                      const Eigen::VectorXd& q,
+                                      uint64_t seed) const {
+    const EvaluatedGrasp evaluated =
+        CloseAndJudge(hand_, X_OH, q, part_, parameters_);
+    if (!evaluated.ok() || !archive_.Wants(evaluated.grasp)) return {};
     for (const Grasp& grasp :
          {TimeFingers(hand_, evaluated.grasp, part_, parameters_),
           evaluated.grasp}) {
       // The rest of the object may be in the way of open fingers.
       if (!IsReachable(hand_, grasp, obstacle_)) continue;
-      if (HoldsOnWhole(grasp) && IsRobust(grasp, seed)) particle.found = grasp;
-      return;
+      if (!HoldsOnWhole(grasp)) return {};
+      const Robustness robustness = JudgeCopies(grasp, seed);
+      return FoundGrasp{grasp, robustness.gripped,
+                        robustness.stable >= swarm_.min_robustness &&
+                            robustness.gripped >= swarm_.min_grip};
     }
+    return {};
   }
 
   // On the whole object the same contacts must hold, not others that happen to.
@@ -263,28 +287,40 @@ class Swarm {
     return swarm_.min_grip > 0.0 || swarm_.grip_weight > 0.0;
   }
 
-  bool IsRobust(const Grasp& grasp, uint64_t seed) const {
-    if (swarm_.min_robustness == 0.0 && swarm_.min_grip == 0.0) return true;
-    const Robustness robustness =
-        CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
-                       {.copies = swarm_.robust_copies,
-                        .gripped = swarm_.min_grip > 0.0,
-                        .pushed = false,
-                        .least_gripped = swarm_.min_grip});
-    return robustness.stable >= swarm_.min_robustness &&
-           robustness.gripped >= swarm_.min_grip;
+  Robustness JudgeCopies(const Grasp& grasp, uint64_t seed) const {
+    if (swarm_.min_robustness == 0.0 && swarm_.min_grip == 0.0) return {};
+    return CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
+                          {.copies = swarm_.robust_copies,
+                           .gripped = swarm_.min_grip > 0.0,
+                           .pushed = false,
+                           .least_gripped = swarm_.min_grip});
   }
 
-  void SortFoundByNiche() {
-    std::map<int, std::vector<int>> niches;
-    for (int i = 0; i < archive_.size(); ++i) {
-      const Grasp& grasp = archive_.grasps()[static_cast<size_t>(i)];
-      niches[FindApproach(grasp.approach_O)].push_back(i);
+  void Keep(const FoundGrasp& found) {
+    if (found.robust) {
+      archive_.Insert(found.grasp);
+    } else if (found.gripped > 0.0) {
+      auto& almost = almost_[FindApproach(found.grasp.approach_O)];
+      if (!almost.empty() && found.gripped < almost.front().gripped) return;
+      if (!almost.empty() && found.gripped > almost.front().gripped) {
+        almost.clear();
+      }
+      almost.push_back(found);
     }
-    found_by_niche_.clear();
-    for (auto& [niche, found] : niches) {
-      found_by_niche_.push_back(std::move(found));
+  }
+
+  void UpdateLeads() {
+    std::map<int, std::vector<const Grasp*>> niches;
+    for (const Grasp& grasp : archive_.grasps()) {
+      niches[FindApproach(grasp.approach_O)].push_back(&grasp);
     }
+    for (const auto& [niche, almost] : almost_) {
+      std::vector<const Grasp*>& leads = niches[niche];
+      if (!leads.empty()) continue;
+      for (const FoundGrasp& found : almost) leads.push_back(&found.grasp);
+    }
+    leads_.clear();
+    for (auto& [niche, grasps] : niches) leads_.push_back(std::move(grasps));
   }
 
   void UpdateNicheBests() {
@@ -311,8 +347,10 @@ class Swarm {
   const uint64_t seed_;
   const double constriction_;
   GraspArchive archive_;
-  // Indices into the archive, for each niche that has any.
-  std::vector<std::vector<int>> found_by_niche_;
+  // For each approach, the grasps that came nearest to being robust.
+  std::map<int, std::vector<FoundGrasp>> almost_;
+  // For each approach that has any: what was found, or else almost so.
+  std::vector<std::vector<const Grasp*>> leads_;
   std::vector<int> niche_best_;  // Particle with the best measure, or -1.
   std::vector<Particle> particles_;
   std::vector<HandPosture> leaders_;  // Each particle's best so far.

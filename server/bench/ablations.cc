@@ -37,6 +37,10 @@ std::vector<BenchVariant> MakeAblations() {
   without("pushes when grasps are chosen",
           [](Parameters& p) { p.hold.push = 0.0; });
   without("niches", [](Parameters& p) { p.swarm.niches = false; });
+  without("shunning what fell through",
+          [](Parameters& p) { p.swarm.shun_failed = false; });
+  without("starts near what was found",
+          [](Parameters& p) { p.swarm.near_share = 0.0; });
   return ablations;
 }
 

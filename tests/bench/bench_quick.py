@@ -11,7 +11,7 @@ import tempfile
 # Little is learned, and quickly.
 QUICK = {
     "active_learning": {"seed_samples": 1500, "rounds": 3},
-    "swarm": {"particles": 100, "iterations": 60, "target_grasps": 60},
+    "swarm": {"particles": 100, "iterations": 300, "target_grasps": 24},
 }
 
 

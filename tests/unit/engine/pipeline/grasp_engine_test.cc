@@ -37,7 +37,7 @@ class GripperPipeline : public ::testing::Test {
     p.active_learning.queries_per_round = 100;
     p.active_learning.test_samples = 50;
     p.swarm.particles = 40;
-    p.swarm.iterations = 25;
+    p.swarm.iterations = 35;
     p.mapping.samples = 400;
     p.replan.iterations = 30;
     p.replan.climb_samples = 20;
@@ -50,6 +50,12 @@ class GripperPipeline : public ::testing::Test {
                   MakeSmallParameters(), 1, threads},
                  context)
         .value();
+  }
+
+  // Learned once for all tests that only transfer.
+  const GraspSpace& LearnedBox() const {
+    static const GraspSpace space = LearnBox(2);
+    return space;
   }
 
   TransferResult TransferBox(const GraspSpace& space, int threads) const {
@@ -90,7 +96,7 @@ class GripperPipeline : public ::testing::Test {
 };
 
 TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
-  const GraspSpace space = LearnBox(2);
+  const GraspSpace& space = LearnedBox();
   ASSERT_GT(space.grasps.size(), 10u);
   ASSERT_EQ(space.curve.size(), 2u);
   const TransferResult result = TransferBox(space, 2);
@@ -119,7 +125,7 @@ TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
 }
 
 TEST_F(GripperPipeline, ATransferEndsWithEnoughSureGraspsOnAnyThreads) {
-  const GraspSpace space = LearnBox(2);
+  const GraspSpace& space = LearnedBox();
   std::vector<TransferResult> results;
   for (const int threads : {1, 2}) {
     TransferRequest request = MakeRequest(box_E_, space, threads);
@@ -151,7 +157,7 @@ TEST_F(GripperPipeline, ATransferEndsWithEnoughSureGraspsOnAnyThreads) {
 }
 
 TEST_F(GripperPipeline, WhatIsNotSureIsTriedOnceMoreWithMoreSamples) {
-  const GraspSpace space = LearnBox(2);
+  const GraspSpace& space = LearnedBox();
   std::vector<TransferResult> results;
   for (const int threads : {1, 2}) {
     TransferRequest request = MakeRequest(box_E_, space, threads);
@@ -175,7 +181,7 @@ TEST_F(GripperPipeline, WhatIsNotSureIsTriedOnceMoreWithMoreSamples) {
 
 TEST_F(GripperPipeline, TheHandKeepsOffThePartThatIsKeptFree) {
   constexpr double kClearance = 0.01;
-  const GraspSpace space = LearnBox(2);
+  const GraspSpace& space = LearnedBox();
   TransferRequest request = MakeRequest(box_E_, space, 2);
   for (int f = 0; f < box_N_.num_triangles(); ++f) {
     if (box_N_.centroid(f).z() > 0.03) request.novel.face_labels[f] = 1;
@@ -218,7 +224,7 @@ TEST_F(GripperPipeline, OneAndTwoThreadsGiveTheSameBytes) {
 }
 
 TEST_F(GripperPipeline, TheExamplesQualityOnItsWholeIsZeroWhereItObstructs) {
-  const GraspSpace space = LearnBox(2);
+  const GraspSpace& space = LearnedBox();
   for (const TransferRecord& record : TransferBox(space, 2).records) {
     EXPECT_NEAR(record.example_epsilon_whole, record.example_epsilon, 1e-9);
   }
