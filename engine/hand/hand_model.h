@@ -61,7 +61,7 @@ struct HandActuator {
 };
 
 /** An articulated hand: a tree of links in topological order, link 0 the base
- whose frame is H. Immutable; shared by all threads. Built by ReadHand(). */
+ whose frame is H. Immutable; shared by all threads. Built by MakeHand(). */
 class HandModel {
  public:
   struct Data {

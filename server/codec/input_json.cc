@@ -363,7 +363,7 @@ Result<HandFile> HandFileFromJson(const std::string& text) {
   JsonFields fields(json, "");
   HandFile file;
   fields.Read("title", file.title);
-  fields.RequireText("urdf", file.urdf);
+  fields.Read("urdf", file.urdf);
   std::string ignored;  // For people.
   fields.Read("licence", ignored);
   fields.Read("source", ignored);
@@ -371,6 +371,7 @@ Result<HandFile> HandFileFromJson(const std::string& text) {
   ReadGraspit(fields, file.graspit);
   GRASPDB_TRY_VOID(fields.Finish());
   if (file.title.empty()) file.title = file.annotations.name;
+  if (file.urdf.empty()) file.urdf = "hand.urdf";
   return file;
 }
 

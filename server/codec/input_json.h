@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/hand/hand_reader.h"
+#include "engine/hand/hand_maker.h"
 #include "server/orders.h"
 #include "server/records.h"
 

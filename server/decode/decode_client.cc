@@ -27,8 +27,17 @@ using Clock = std::chrono::steady_clock;
 
 // More than any mesh within sensible limits needs.
 constexpr std::size_t kMostAnswerBytes = std::size_t{512} << 20;
-constexpr char kMeshHint[] =
-    "Check the mesh in a mesh editor; decimate or repair it first.";
+
+// What a helper reads, in words.
+struct Subject {
+  const char* name;
+  const char* hint;
+  const char* field;
+};
+constexpr Subject kMesh{
+    "mesh", "Check the mesh in a mesh editor; decimate or repair it first.",
+    "mesh"};
+constexpr Subject kUrdf{"URDF", "Check it with check_urdf.", "urdf"};
 
 Error MakeStartError(const std::string& helper, const std::string& why) {
   return Error{
@@ -37,9 +46,9 @@ Error MakeStartError(const std::string& helper, const std::string& why) {
       "Install graspdb-decode beside the program."};
 }
 
-Error MakeMeshError(std::string message) {
-  return Error{ErrorCode::kUnusableInput, std::move(message), kMeshHint,
-               "mesh"};
+Error MakeInputError(const Subject& subject, std::string message) {
+  return Error{ErrorCode::kUnusableInput, std::move(message), subject.hint,
+               subject.field};
 }
 
 std::string FindHelper() {
@@ -167,16 +176,18 @@ TalkEnd Talk(int socket, std::span<const uint8_t> head,
 
 // Without an answer.
 Error DescribeEnd(int status, const DecoderOptions& options,
-                  DecodeCounts& counts) {
+                  const Subject& subject, DecodeCounts& counts) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     ++counts.timed_out;
-    return MakeMeshError(fmt::format(
-        "the decoder gave up after {:.3g} s of computing", options.deadline));
+    return MakeInputError(
+        subject, fmt::format("the decoder gave up after {:.3g} s of computing",
+                             options.deadline));
   }
   if (WIFSIGNALED(status)) {
     ++counts.crashed;
-    return MakeMeshError(fmt::format(
-        "the decoder crashed on the mesh (signal {})", WTERMSIG(status)));
+    return MakeInputError(
+        subject, fmt::format("the decoder crashed on the {} (signal {})",
+                             subject.name, WTERMSIG(status)));
   }
   // What a shell and the dynamic linker say about a program that cannot run.
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
@@ -184,13 +195,16 @@ Error DescribeEnd(int status, const DecoderOptions& options,
     return MakeStartError(options.helper, "a library is missing");
   }
   ++counts.crashed;
-  return MakeMeshError("the decoder stopped without an answer");
+  return MakeInputError(subject, "the decoder stopped without an answer");
 }
 
-Result<DecodeAnswer> RunHelper(const DecoderOptions& options,
-                               std::span<const uint8_t> head,
-                               std::span<const uint8_t> body,
-                               DecodeCounts& counts) {
+// @param parse  Takes the answer's bytes apart: an optional Result<T>, see
+//   decode_protocol.h.
+template <class Parse>
+auto RunHelper(const DecoderOptions& options, const Subject& subject,
+               std::span<const uint8_t> head, std::span<const uint8_t> body,
+               const Parse& parse, DecodeCounts& counts) ->
+    typename decltype(parse(body))::value_type {
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.deadline));
@@ -218,17 +232,18 @@ Result<DecodeAnswer> RunHelper(const DecoderOptions& options,
   switch (Talk(ours.get(), head, body, deadline, &bytes)) {
     case TalkEnd::kDeadline:
       ++counts.timed_out;
-      return MakeMeshError(
+      return MakeInputError(
+          subject,
           fmt::format("the decoder gave up after {:.3g} s", options.deadline));
     case TalkEnd::kTooMuch:
       ++counts.crashed;
-      return MakeMeshError("the decoded mesh is too large");
+      return MakeInputError(subject, "the decoder said too much");
     case TalkEnd::kAnswered:
       break;
   }
   const int status = child.End();
-  auto answer = ParseAnswer(bytes);
-  if (!answer) return DescribeEnd(status, options, counts);
+  auto answer = parse(bytes);
+  if (!answer) return DescribeEnd(status, options, subject, counts);
   if (answer->has_value()) {
     ++counts.admitted;
   } else if (answer->error().code == ErrorCode::kInternal) {
@@ -259,7 +274,8 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
                  "Decimate the mesh first.", "mesh"};
   }
   DecodeCounts counts;
-  auto result = RunHelper(options_, EncodeRequest(request), bytes, counts);
+  auto result = RunHelper(options_, kMesh, EncodeRequest(request), bytes,
+                          ParseAnswer, counts);
   Add(counts);
   GRASPDB_TRY(answer, std::move(result));
   const MassProperties mass = CalcMassProperties(answer.mesh_O);
@@ -272,6 +288,16 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
                      answer.seconds};
 }
 
+Result<HandTree> Decoder::DecodeUrdf(const std::string& urdf) const {
+  DecodeCounts counts;
+  auto tree =
+      RunHelper(options_, kUrdf, EncodeUrdfRequest(),
+                {reinterpret_cast<const uint8_t*>(urdf.data()), urdf.size()},
+                ParseHandAnswer, counts);
+  Add(counts);
+  return tree;
+}
+
 Result<std::string> Decoder::Check() const {
   constexpr std::string_view kTetrahedron =
       "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n"
@@ -281,8 +307,8 @@ Result<std::string> Decoder::Check() const {
   DecodeRequest request;
   request.format = MeshFormat::kObj;
   DecodeCounts of_no_account;
-  auto answer =
-      RunHelper(options_, EncodeRequest(request), bytes, of_no_account);
+  auto answer = RunHelper(options_, kMesh, EncodeRequest(request), bytes,
+                          ParseAnswer, of_no_account);
   if (answer) return std::move(answer->confinement);
   Error error = answer.error();
   error.code = ErrorCode::kInternal;

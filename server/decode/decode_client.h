@@ -8,6 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/geometry/triangle_mesh.h"
+#include "engine/hand/hand_tree.h"
 #include "server/decode/decode_protocol.h"
 
 namespace graspdb {
@@ -32,7 +33,7 @@ struct DecodedMesh {
   DecodeSeconds seconds{};
 };
 
-/** What became of the mesh files since the program started. */
+/** What became of the files since the program started. */
 struct DecodeCounts {
   int64_t admitted{0};
   int64_t refused{0};    ///< By the helper, with a reason.
@@ -41,8 +42,8 @@ struct DecodeCounts {
   int64_t unstarted{0};  ///< It could not be started or confined.
 };
 
-/** Admits mesh files without ever touching their bytes: a confined helper
- program decodes, repairs and decimates one mesh and dies. Thread-safe. */
+/** Admits mesh files and URDFs without ever touching their bytes: a confined
+ helper program reads one and dies. Thread-safe. */
 class Decoder {
  public:
   explicit Decoder(DecoderOptions options = {});
@@ -56,6 +57,12 @@ class Decoder {
    @pre metres_per_unit is positive and finite, work_triangles >= 4. */
   Result<DecodedMesh> Decode(std::span<const uint8_t> bytes,
                              const DecodeRequest& request) const;
+
+  /** What a URDF says of a hand, see ReadUrdf().
+   @retval kUnusableInput when it says nothing that a hand can be, or the helper
+     crashed, ran out of memory or missed the deadline on it.
+   @retval kInternal when the helper cannot be started or confined. */
+  Result<HandTree> DecodeUrdf(const std::string& urdf) const;
 
   /** Decodes a small solid: for a server to call before it starts to serve.
    @returns how the helper is confined: "landlock and seccomp", "seccomp" (the

@@ -1,6 +1,6 @@
-// graspdb-decode: reads one request and a mesh file's bytes from standard input
-// inside a sandbox, writes one answer to standard output. The server starts one
-// per mesh; see decode_client.h.
+// graspdb-decode: reads one request and the bytes of a mesh file or a URDF from
+// standard input inside a sandbox, writes one answer to standard output. The
+// server starts one per file; see decode_client.h.
 
 #include <algorithm>
 #include <cerrno>
@@ -23,6 +23,7 @@
 #include "engine/admission/surface_reconstruction.h"
 #include "engine/base/thread_clock.h"
 #include "engine/geometry/seen_surface.h"
+#include "engine/hand/urdf_reader.h"
 #include "server/decode/decode_protocol.h"
 #include "server/decode/sandbox.h"
 
@@ -140,8 +141,8 @@ Result<DecodeAnswer> Admit(const DecodeRequest& request,
                       clock.seconds()};
 }
 
-Result<DecodeAnswer> AnswerRequest(const std::string& confinement) try {
-  const std::vector<uint8_t> bytes = ReadStandardInput();
+Result<DecodeAnswer> AnswerMesh(std::span<const uint8_t> bytes,
+                                const std::string& confinement) {
   std::span<const uint8_t> mesh;
   const auto request = ParseRequest(bytes, &mesh);
   if (!request) {
@@ -152,17 +153,35 @@ Result<DecodeAnswer> AnswerRequest(const std::string& confinement) try {
   GRASPDB_TRY(answer, Admit(*request, mesh));
   answer.confinement = confinement;
   return std::move(answer);
-} catch (const std::bad_alloc&) {
-  return Error{ErrorCode::kUnusableInput,
-               "the mesh needs more memory than its decoding may use",
-               "Decimate or repair the mesh first.", "mesh"};
+}
+
+Result<HandTree> AnswerUrdf(std::span<const uint8_t> urdf) try {
+  return ReadUrdf(std::string(urdf.begin(), urdf.end()));
 } catch (const std::exception&) {
-  return Error{ErrorCode::kUnusableInput, "the decoder failed on the mesh",
-               "Check the mesh in a mesh editor.", "mesh"};
+  return Error{ErrorCode::kUnusableInput, "the decoder failed on the URDF",
+               "Check it with check_urdf.", "urdf"};
+}
+
+std::vector<uint8_t> AnswerRequest(const std::string& confinement) try {
+  const std::vector<uint8_t> bytes = ReadStandardInput();
+  if (const auto urdf = ParseUrdfRequest(bytes)) {
+    return EncodeHandAnswer(AnswerUrdf(*urdf));
+  }
+  return EncodeAnswer(AnswerMesh(bytes, confinement));
+} catch (const std::bad_alloc&) {
+  return EncodeAnswer(
+      Error{ErrorCode::kUnusableInput,
+            "the mesh needs more memory than its decoding may use",
+            "Decimate or repair the mesh first.", "mesh"});
+} catch (const std::exception&) {
+  return EncodeAnswer(Error{ErrorCode::kUnusableInput,
+                            "the decoder failed on the mesh",
+                            "Check the mesh in a mesh editor.", "mesh"});
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app{"Decodes one mesh in a sandbox; graspdb starts it by itself."};
+  CLI::App app{
+      "Decodes one mesh or URDF in a sandbox; graspdb starts it by itself."};
   SandboxLimits limits;
   bool allow_unsandboxed = false;
   bool probe = false;
@@ -181,8 +200,9 @@ int Run(int argc, char** argv) {
     WriteStandardOutput(EncodeAnswer(confinement.error()));
     return 1;
   }
-  const auto answer = AnswerRequest(confinement ? *confinement : "none");
-  return WriteStandardOutput(EncodeAnswer(answer)) ? 0 : 1;
+  return WriteStandardOutput(AnswerRequest(confinement ? *confinement : "none"))
+             ? 0
+             : 1;
 }
 
 }  // namespace

@@ -11,9 +11,21 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr uint32_t kRequestMark = 0x31524447;  // "GDR1"
-constexpr uint32_t kAnswerMark = 0x33414447;   // "GDA3"
+constexpr uint32_t kRequestMark = 0x31524447;      // "GDR1"
+constexpr uint32_t kAnswerMark = 0x34414447;       // "GDA4"
+constexpr uint32_t kUrdfRequestMark = 0x31554447;  // "GDU1"
+constexpr uint32_t kHandAnswerMark = 0x31484447;   // "GDH1"
+constexpr uint32_t kErrorMark = 0x31454447;        // "GDE1"
 constexpr uint8_t kNoFormat = 255;
+// Without the names' letters.
+constexpr std::size_t kLeastPieceBytes = 100;
+constexpr std::size_t kLeastLinkBytes = 200;
+
+bool MayDecoderSay(ErrorCode code) {
+  return code == ErrorCode::kInvalidArgument ||
+         code == ErrorCode::kUnusableInput || code == ErrorCode::kTooLarge ||
+         code == ErrorCode::kInternal;
+}
 
 class Writer {
  public:
@@ -32,6 +44,17 @@ class Writer {
     for (const Eigen::Vector3d& p : points) {
       for (const double x : p) Write(x);
     }
+  }
+  void WritePose(const RigidTransform& X) {
+    for (const double x : X.rotation.reshaped()) Write(x);
+    for (const double x : X.translation) Write(x);
+  }
+  void WriteError(const Error& error) {
+    Write(kErrorMark);
+    Write(static_cast<uint8_t>(error.code));
+    WriteText(error.message);
+    WriteText(error.hint);
+    WriteText(error.field);
   }
   void WriteMesh(const TriangleMesh& mesh) {
     WritePoints(mesh.vertices());
@@ -98,6 +121,63 @@ class Reader {
     return points;
   }
 
+  Eigen::Vector3d ReadVector() {
+    Eigen::Vector3d v;
+    for (double& x : v) x = ReadFinite();
+    return v;
+  }
+
+  RigidTransform ReadPose() {
+    RigidTransform X;
+    for (double& x : X.rotation.reshaped()) x = ReadFinite();
+    X.translation = ReadVector();
+    return X;
+  }
+
+  HandTree::Joint ReadJoint() {
+    HandTree::Joint joint;
+    joint.name = ReadText();
+    const auto type = Read<uint8_t>();
+    Require(type <= static_cast<uint8_t>(JointType::kPrismatic));
+    joint.type = static_cast<JointType>(type);
+    joint.X_PJ = ReadPose();
+    joint.axis_J = ReadVector();
+    joint.lower = ReadFinite();
+    joint.upper = ReadFinite();
+    joint.mimicked = ReadText();
+    joint.ratio = ReadFinite();
+    return joint;
+  }
+
+  HandTree::Link ReadLink() {
+    HandTree::Link link;
+    link.name = ReadText();
+    link.parent = Read<int>();
+    link.joint = ReadJoint();
+    link.mass = ReadFinite();
+    link.p_LcCM = ReadVector();
+    link.pieces.resize(ReadCount(kLeastPieceBytes));
+    for (HandTree::Piece& piece : link.pieces) {
+      piece.mesh = ReadText();
+      piece.X_LM = ReadPose();
+    }
+    return link;
+  }
+
+  // The answer, if it is an error.
+  std::optional<Error> ReadError() {
+    Reader reader(rest_);
+    reader.Require(reader.Read<uint32_t>() == kErrorMark);
+    Error error;
+    error.code = static_cast<ErrorCode>(reader.Read<uint8_t>());
+    reader.Require(MayDecoderSay(error.code));
+    error.message = reader.ReadText();
+    error.hint = reader.ReadText();
+    error.field = reader.ReadText();
+    if (!reader.ReadEverything()) return std::nullopt;
+    return error;
+  }
+
   DecodedCloud ReadCloud() {
     DecodedCloud cloud;
     cloud.report.num_points = Read<int>();
@@ -133,12 +213,6 @@ class Reader {
   std::span<const uint8_t> rest_;
   bool ok_{true};
 };
-
-bool MayDecoderSay(ErrorCode code) {
-  return code == ErrorCode::kInvalidArgument ||
-         code == ErrorCode::kUnusableInput || code == ErrorCode::kTooLarge ||
-         code == ErrorCode::kInternal;
-}
 
 }  // namespace
 
@@ -179,17 +253,69 @@ std::optional<DecodeRequest> ParseRequest(std::span<const uint8_t> bytes,
   return request;
 }
 
-std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
+std::vector<uint8_t> EncodeUrdfRequest() {
   Writer writer;
-  writer.Write(kAnswerMark);
-  writer.Write<uint8_t>(answer.has_value());
+  writer.Write(kUrdfRequestMark);
+  return writer.TakeBytes();
+}
+
+std::optional<std::span<const uint8_t>> ParseUrdfRequest(
+    std::span<const uint8_t> bytes) {
+  Reader reader(bytes);
+  reader.Require(reader.Read<uint32_t>() == kUrdfRequestMark);
+  if (!reader.ok()) return std::nullopt;
+  return reader.rest();
+}
+
+std::vector<uint8_t> EncodeHandAnswer(const Result<HandTree>& answer) {
+  Writer writer;
   if (!answer) {
-    writer.Write(static_cast<uint8_t>(answer.error().code));
-    writer.WriteText(answer.error().message);
-    writer.WriteText(answer.error().hint);
-    writer.WriteText(answer.error().field);
+    writer.WriteError(answer.error());
     return writer.TakeBytes();
   }
+  writer.Write(kHandAnswerMark);
+  writer.Write<uint64_t>(answer->links.size());
+  for (const HandTree::Link& link : answer->links) {
+    writer.WriteText(link.name);
+    writer.Write(link.parent);
+    writer.WriteText(link.joint.name);
+    writer.Write(static_cast<uint8_t>(link.joint.type));
+    writer.WritePose(link.joint.X_PJ);
+    for (const double x : link.joint.axis_J) writer.Write(x);
+    writer.Write(link.joint.lower);
+    writer.Write(link.joint.upper);
+    writer.WriteText(link.joint.mimicked);
+    writer.Write(link.joint.ratio);
+    writer.Write(link.mass);
+    for (const double x : link.p_LcCM) writer.Write(x);
+    writer.Write<uint64_t>(link.pieces.size());
+    for (const HandTree::Piece& piece : link.pieces) {
+      writer.WriteText(piece.mesh);
+      writer.WritePose(piece.X_LM);
+    }
+  }
+  return writer.TakeBytes();
+}
+
+std::optional<Result<HandTree>> ParseHandAnswer(
+    std::span<const uint8_t> bytes) {
+  Reader reader(bytes);
+  if (auto error = reader.ReadError()) return *std::move(error);
+  reader.Require(reader.Read<uint32_t>() == kHandAnswerMark);
+  HandTree tree;
+  tree.links.resize(reader.ReadCount(kLeastLinkBytes));
+  for (HandTree::Link& link : tree.links) link = reader.ReadLink();
+  if (!reader.ReadEverything() || !CheckHandTree(tree)) return std::nullopt;
+  return tree;
+}
+
+std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
+  Writer writer;
+  if (!answer) {
+    writer.WriteError(answer.error());
+    return writer.TakeBytes();
+  }
+  writer.Write(kAnswerMark);
   writer.WriteMesh(answer->mesh_O);
   writer.WriteMesh(answer->work_O);
   writer.Write<uint64_t>(answer->repairs.size());
@@ -216,19 +342,8 @@ std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
 std::optional<Result<DecodeAnswer>> ParseAnswer(
     std::span<const uint8_t> bytes) {
   Reader reader(bytes);
+  if (auto error = reader.ReadError()) return *std::move(error);
   reader.Require(reader.Read<uint32_t>() == kAnswerMark);
-  const auto has_value = reader.Read<uint8_t>();
-  reader.Require(has_value <= 1);
-  if (reader.ok() && has_value == 0) {
-    Error error;
-    error.code = static_cast<ErrorCode>(reader.Read<uint8_t>());
-    reader.Require(MayDecoderSay(error.code));
-    error.message = reader.ReadText();
-    error.hint = reader.ReadText();
-    error.field = reader.ReadText();
-    if (!reader.ReadEverything()) return std::nullopt;
-    return error;
-  }
   DecodeAnswer answer;
   answer.mesh_O = reader.ReadMesh();
   answer.work_O = reader.ReadMesh();

@@ -10,11 +10,12 @@
 #include "engine/admission/mesh_format.h"
 #include "engine/base/result.h"
 #include "engine/geometry/triangle_mesh.h"
+#include "engine/hand/hand_tree.h"
 
 /** @file
  What the server and its decoding helper say to each other, once: a request, the
- mesh file's bytes right after it, one answer. Little-endian; sizes before
- contents. Neither side trusts the other's bytes. */
+ bytes of a mesh file or a URDF right after it, one answer. Little-endian; sizes
+ before contents. Neither side trusts the other's bytes. */
 
 namespace graspdb {
 
@@ -61,12 +62,24 @@ std::vector<uint8_t> EncodeRequest(const DecodeRequest& request);
 std::optional<DecodeRequest> ParseRequest(std::span<const uint8_t> bytes,
                                           std::span<const uint8_t>* mesh);
 
+/** The bytes that go before a URDF's. */
+std::vector<uint8_t> EncodeUrdfRequest();
+
+/** @returns the URDF behind the request, or nothing when the bytes are no such
+ request. */
+std::optional<std::span<const uint8_t>> ParseUrdfRequest(
+    std::span<const uint8_t> bytes);
+
 std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer);
+std::vector<uint8_t> EncodeHandAnswer(const Result<HandTree>& answer);
 
 /** Takes an answer apart and checks it: sizes, indices, finite coordinates,
  both meshes closed, error codes that a decoder may give; text comes out as
  printable ASCII.
  @returns nothing when the bytes are no such answer. */
 std::optional<Result<DecodeAnswer>> ParseAnswer(std::span<const uint8_t> bytes);
+
+/** The same for the answer to a URDF, which must pass CheckHandTree(). */
+std::optional<Result<HandTree>> ParseHandAnswer(std::span<const uint8_t> bytes);
 
 }  // namespace graspdb

@@ -138,7 +138,7 @@ Result<std::vector<StoredGraspSpace>> Populate(Service& service,
     GRASPDB_TRY(files, ReadHandFolder(folder));
     const auto hand = service.AddHand(files);
     if (!hand) return InFile(folder, hand.error());
-    context.ReportProgress("hand " + hand->name, 0.0);
+    context.ReportProgress("hand " + hand->hand.name, 0.0);
   }
   std::vector<FolderExample> examples;
   for (const fs::path& folder : FindFoldersWith(root, "category.json")) {

@@ -1,12 +1,14 @@
 #include "server/jobs/service.h"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "engine/admission/mesh_format.h"
-#include "engine/hand/hand_reader.h"
+#include "engine/hand/hand_maker.h"
 #include "server/codec/input_json.h"
 #include "server/decode/decode_client.h"
 #include "server/ids.h"
@@ -65,18 +67,51 @@ std::string CalcHandSha256(const HandFiles& files) {
   return CalcSha256(content);
 }
 
-Result<std::shared_ptr<const HandModel>> BuildHand(const StoredHand& hand) {
+// A path without its folders: what a hand's mesh goes by.
+std::string_view CutFolders(std::string_view path) {
+  const size_t slash = path.find_last_of("/\\");
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+Result<std::shared_ptr<const HandModel>> BuildHand(const StoredHand& hand,
+                                                   const Decoder& decoder) {
   GRASPDB_TRY(file, HandFileFromJson(hand.annotations));
+  GRASPDB_TRY(tree, decoder.DecodeUrdf(hand.urdf));
   const auto load = [&](const std::string& name) -> Result<TriangleMesh> {
     for (const auto& [known, mesh] : hand.meshes) {
-      if (known == name) return mesh;
+      if (CutFolders(known) == CutFolders(name)) return mesh;
     }
     return Error{ErrorCode::kUnusableInput,
                  "The URDF refers to " + name + ", which is not there.",
-                 "send every mesh that it refers to", "meshes"};
+                 "send every mesh that it refers to", "mesh"};
   };
-  GRASPDB_TRY(model, ReadHand(hand.urdf, file.annotations, load));
+  GRASPDB_TRY(model, MakeHand(tree, file.annotations, load));
   return std::make_shared<const HandModel>(std::move(model));
+}
+
+Result<void> CheckHandMeshes(const HandFiles& files) {
+  std::set<std::string_view> names;
+  for (const auto& [name, bytes] : files.meshes) {
+    const std::string_view file = CutFolders(name);
+    const bool legible =
+        !file.empty() && file.size() <= 100 && file.front() != '.' &&
+        std::all_of(file.begin(), file.end(), [](unsigned char c) {
+          return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+        });
+    if (!legible) {
+      return Error{
+          ErrorCode::kInvalidArgument,
+          "A mesh's file name has 1 to 100 letters, digits, _, - or ., "
+          "as in the URDF.",
+          "curl -F 'mesh=@palm.stl' sends the name, too", "mesh"};
+    }
+    if (!names.insert(file).second) {
+      return Error{ErrorCode::kInvalidArgument,
+                   fmt::format("Two meshes are called {}.", file),
+                   "folders do not tell them apart", "mesh"};
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -107,7 +142,7 @@ Result<StoredCategory> Service::UpdateCategory(const StoredCategory& category) {
   return store_->UpdateCategory(category);
 }
 
-Result<StoredHand> Service::AddHand(const HandFiles& files) {
+Result<AddedHand> Service::AddHand(const HandFiles& files) {
   GRASPDB_TRY(file, HandFileFromJson(files.annotations));
   StoredHand hand;
   hand.name = file.annotations.name;
@@ -116,21 +151,31 @@ Result<StoredHand> Service::AddHand(const HandFiles& files) {
   hand.urdf = files.urdf;
   hand.annotations = files.annotations;
   GRASPDB_TRY_VOID(CheckName(hand.name, "name"));
+  GRASPDB_TRY_VOID(CheckHandMeshes(files));
   if (auto known = store_->FindHand(hand.name);
       known && known->sha256 == hand.sha256) {
-    return *known;
+    return AddedHand{*std::move(known), false};
   }
   for (const auto& [name, bytes] : files.meshes) {
     DecodeRequest request;
     request.file_name = name;
-    GRASPDB_TRY(decoded, decoder_->Decode(
-                             {reinterpret_cast<const uint8_t*>(bytes.data()),
-                              bytes.size()},
-                             request));
-    hand.meshes.emplace_back(name, std::move(decoded.mesh_O));
+    request.limits.max_bytes = options_.max_mesh_bytes;
+    request.limits.max_triangles = options_.max_triangles;
+    auto decoded = decoder_->Decode(
+        {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
+        request);
+    if (!decoded) {
+      Error error = decoded.error();
+      error.message = name + ": " + error.message;
+      return error;
+    }
+    hand.meshes.emplace_back(name, std::move(decoded->mesh_O));
   }
-  if (const auto model = BuildHand(hand); !model) return model.error();
-  return store_->InsertHand(hand);
+  if (const auto model = BuildHand(hand, *decoder_); !model) {
+    return model.error();
+  }
+  GRASPDB_TRY(stored, store_->InsertHand(hand));
+  return AddedHand{std::move(stored), true};
 }
 
 Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
@@ -142,7 +187,7 @@ Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
     }
   }
   GRASPDB_TRY(hand, store_->FindHand(name));
-  GRASPDB_TRY(model, BuildHand(hand));
+  GRASPDB_TRY(model, BuildHand(hand, *decoder_));
   const std::lock_guard lock(hands_mutex_);
   return hands_.emplace(name, model).first->second;
 }

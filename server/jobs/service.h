@@ -44,6 +44,12 @@ struct HandFiles {
   std::vector<std::pair<std::string, std::string>> meshes;
 };
 
+/** A stored hand. */
+struct AddedHand {
+  StoredHand hand;
+  bool created{false};  ///< False when it was stored before.
+};
+
 struct ServiceOptions {
   int threads{0};  ///< Of the engine; 0: as many as there are cores.
   int64_t max_mesh_bytes{kMostFileBytes};
@@ -107,7 +113,11 @@ class Service {
   Result<StoredCategory> AddCategory(const StoredCategory& category);
   Result<StoredCategory> UpdateCategory(const StoredCategory& category);
   /** Reads the hand once, so that only a usable one is stored. */
-  Result<StoredHand> AddHand(const HandFiles& files);
+  /** Decodes a hand's meshes and its URDF, checks that they make a hand, and
+   stores it; the same files a second time change nothing.
+   @retval kConflict when another hand has its name.
+   @retval kInvalidArgument, kUnusableInput, kTooLarge naming what is wrong. */
+  Result<AddedHand> AddHand(const HandFiles& files);
   /** The built hand, shared by all callers. */
   Result<std::shared_ptr<const HandModel>> FindHandModel(
       const std::string& name) const;

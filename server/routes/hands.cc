@@ -10,6 +10,9 @@
 namespace graspdb {
 namespace {
 
+constexpr char kFormHint[] =
+    "curl -F hand=@hand.json -F urdf=@hand.urdf -F mesh=@palm.stl …";
+
 Result<std::string> DescribeHand(const Service& service,
                                  const StoredHand& hand) {
   GRASPDB_TRY(model, service.FindHandModel(hand.name));
@@ -71,17 +74,64 @@ Result<HttpResponse> GetHandMesh(const Service& service,
                "GET /v1/hands/{name}/urdf names its meshes.", "file"};
 }
 
+/** The form's files hand (a hand.json), urdf, and mesh as often as it needs. */
+Result<HandFiles> ReadHandFiles(const HttpRequest& request) {
+  HandFiles files;
+  bool described = false;
+  bool drawn = false;
+  for (const FormPart& file : request.files) {
+    if (file.name == "hand" && !described) {
+      files.annotations = file.content;
+      described = true;
+    } else if (file.name == "urdf" && !drawn) {
+      files.urdf = file.content;
+      drawn = true;
+    } else if (file.name == "mesh") {
+      files.meshes.emplace_back(file.filename, file.content);
+    } else {
+      return Error{
+          ErrorCode::kInvalidArgument,
+          fmt::format("The form has a file {} that a hand has not.", file.name),
+          kFormHint, file.name};
+    }
+  }
+  if (!described || !drawn) {
+    return Error{ErrorCode::kInvalidArgument,
+                 fmt::format("There is no file {} in the request.",
+                             described ? "urdf" : "hand"),
+                 kFormHint, described ? "urdf" : "hand"};
+  }
+  return files;
+}
+
+Result<HttpResponse> PostHand(Service& service, WorkSlots& slots,
+                              const HttpRequest& request) {
+  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  GRASPDB_TRY(files, ReadHandFiles(request));
+  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
+    const auto slot = slots.Take(request.stop);
+    if (!slot) return slot.error();
+    GRASPDB_TRY(added, service.AddHand(files));
+    GRASPDB_TRY(json, DescribeHand(service, added.hand));
+    HttpResponse response = MakeJsonResponse(added.created ? 201 : 200, json);
+    response.headers.emplace_back("Location", "/v1/hands/" + added.hand.name);
+    return response;
+  });
+}
+
 }  // namespace
 
-void AddHandRoutes(Router& router, Service& service) {
+void AddHandRoutes(Router& router, Service& service,
+                   const RouteOptions& options) {
   router.Add({"GET", "/v1/hands", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return ListHands(service, request);
               }});
-  router.Add({"POST", "/v1/hands", BodyKind::kUpload,
-              [](const HttpRequest&) -> Result<HttpResponse> {
-                return MakeNotBuilt("Uploading a hand");
-              }});
+  router.Add(
+      {"POST", "/v1/hands", BodyKind::kUpload,
+       [&service, slots = options.work_slots](const HttpRequest& request) {
+         return PostHand(service, *slots, request);
+       }});
   router.Add({"GET", "/v1/hands/{name}", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return GetHand(service, request);

@@ -32,7 +32,8 @@ void AddCategoryRoutes(Router& router, Service& service);
 void AddGraspRoutes(Router& router, Service& service,
                     const RouteOptions& options);
 void AddGraspSpaceRoutes(Router& router, Service& service);
-void AddHandRoutes(Router& router, Service& service);
+void AddHandRoutes(Router& router, Service& service,
+                   const RouteOptions& options);
 void AddJobRoutes(Router& router, Service& service,
                   const RouteOptions& options);
 void AddMetricsRoutes(Router& router, Service& service,

@@ -70,11 +70,6 @@ HttpResponse MakeFileResponse(std::string bytes, const std::string& name,
   return response;
 }
 
-Error MakeNotBuilt(const std::string& what) {
-  return {ErrorCode::kNotImplemented, fmt::format("{} is not built yet.", what),
-          "GET /openapi.json lists what there is."};
-}
-
 Error MakeMissingMesh() {
   return {ErrorCode::kInvalidArgument, "There is no mesh in the request.",
           "Send it as the body (curl --data-binary @FILE) or as the form's "

@@ -24,8 +24,6 @@ HttpResponse MakeJsonResponse(int status, std::string json);
 HttpResponse MakeFileResponse(std::string bytes, const std::string& name,
                               const std::string& format);
 
-/** 501 for what the contract announces. */
-Error MakeNotBuilt(const std::string& what);
 /** 400 for an upload without a mesh. */
 Error MakeMissingMesh();
 

@@ -62,7 +62,7 @@ Router MakeRouter(Service& service, const RouteOptions& options) {
   AddGraspSpaceRoutes(router, service);
   AddGraspRoutes(router, service, options);
   AddTransferRoutes(router, service);
-  AddHandRoutes(router, service);
+  AddHandRoutes(router, service, options);
   AddJobRoutes(router, service, options);
   AddBackupRoutes(router, service);
   AddMetricsRoutes(router, service, options);

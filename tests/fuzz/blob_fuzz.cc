@@ -45,6 +45,14 @@ std::vector<std::string> MakeSeeds() {
   DecodeRequest request;
   request.file_name = "a.obj";
   request.metres_per_unit = 0.001;
+  HandTree hand;
+  hand.links.resize(2);
+  hand.links[0].name = "palm";
+  hand.links[1].name = "jaw";
+  hand.links[1].parent = 0;
+  hand.links[1].joint.name = "slide";
+  hand.links[1].joint.upper = 1.0;
+  hand.links[1].pieces = {{"jaw.obj", {}}};
   const auto text = [](const std::vector<uint8_t>& bytes) {
     return std::string(bytes.begin(), bytes.end());
   };
@@ -58,6 +66,7 @@ std::vector<std::string> MakeSeeds() {
           "a" + text(EncodeAnswer(answer)),
           "a" + text(EncodeAnswer(
                     Error{ErrorCode::kUnusableInput, "no", "hint", "mesh"})),
+          "h" + text(EncodeHandAnswer(hand)),
           "r" + text(EncodeRequest(request)) + "v 0 0 0"};
 }
 
@@ -94,6 +103,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       if (const auto answer = ParseAnswer({data + 1, size - 1});
           answer && answer->has_value()) {
         Require(IsClosed((*answer)->mesh_O) && IsClosed((*answer)->work_O));
+      }
+      break;
+    case 'h':
+      if (const auto hand = ParseHandAnswer({data + 1, size - 1});
+          hand && hand->has_value()) {
+        Require(CheckHandTree(**hand).has_value());
       }
       break;
     case 'r': {

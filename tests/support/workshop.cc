@@ -12,7 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/contract.h"
-#include "engine/hand/hand_reader.h"
+#include "engine/hand/hand_maker.h"
+#include "engine/hand/urdf_reader.h"
 
 namespace graspdb::workshop {
 namespace {
@@ -239,7 +240,9 @@ std::shared_ptr<const HandModel> LoadBarrettHand() {
     return Result<TriangleMesh>(LoadObj(folder + name));
   };
   return std::make_shared<const HandModel>(
-      ReadHand(ReadText(folder + "hand.urdf"), annotations, load).value());
+      MakeHand(ReadUrdf(ReadText(folder + "hand.urdf")).value(), annotations,
+               load)
+          .value());
 }
 
 std::shared_ptr<const HandModel> MakeTwoJawGripper() {

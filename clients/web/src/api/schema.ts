@@ -459,7 +459,10 @@ export interface paths {
         /** The hands, by name. */
         readonly get: operations["listHands"];
         readonly put?: never;
-        /** Upload a hand. Not built yet. */
+        /**
+         * Store a hand.
+         * @description A form with the hand's files. Its URDF has revolute joints with limits or prismatic ones; collision shapes are convex meshes in metres, at most 5,000 triangles each, known by their file names without folders. hand.json says what a URDF does not. The same files a second time answer with the hand already stored.
+         */
         readonly post: operations["postHand"];
         readonly delete?: never;
         readonly options?: never;
@@ -1179,6 +1182,44 @@ export interface components {
             readonly closing_force: number;
             readonly created_at: components["schemas"]["Time"];
         };
+        /** @description What a grasp planner needs to know of a hand and a URDF does not say; links and joints are named as there. */
+        readonly HandDescription: {
+            readonly name: string;
+            readonly title?: string;
+            /** @description The URDF's file name; of no account in a form. */
+            readonly urdf?: string;
+            readonly licence?: string;
+            readonly source?: string;
+            readonly approach_axis_H?: components["schemas"]["Direction"];
+            /** @default 15 */
+            readonly closing_force_n: number;
+            /** @description Each drives a joint and those that mimic it; at least one closes. */
+            readonly actuators: readonly {
+                readonly name: string;
+                readonly joint: string;
+                /** @default false */
+                readonly closes: boolean;
+            }[];
+            /** @description When a joint is blocked, another goes on at a multiple of the motor's travel. */
+            readonly breakaway?: readonly {
+                readonly joint: string;
+                readonly released_joint: string;
+                readonly ratio: number;
+            }[];
+            /** @description Where the hand likes to touch; at least one. */
+            readonly contact_points: readonly {
+                readonly link: string;
+                readonly p_L: components["schemas"]["Point"];
+                readonly nhat_L: components["schemas"]["Direction"];
+            }[];
+            /** @description Pairs of links that may touch. */
+            readonly ignored_collisions?: readonly [
+                string,
+                string
+            ][];
+            /** @description Where GraspIt! has its model, for as=graspit. */
+            readonly graspit?: Record<string, never>;
+        };
         readonly HandList: {
             readonly items: readonly components["schemas"]["Hand"][];
             readonly next_cursor: components["schemas"]["Cursor"];
@@ -1322,15 +1363,6 @@ export interface components {
         };
         /** @description The mesh cannot be used, or the Idempotency-Key stands for another request; nothing was stored. */
         readonly Unusable: {
-            headers: {
-                readonly [name: string]: unknown;
-            };
-            content: {
-                readonly "application/problem+json": components["schemas"]["Problem"];
-            };
-        };
-        /** @description Announced, but not built yet. */
-        readonly NotImplemented: {
             headers: {
                 readonly [name: string]: unknown;
             };
@@ -2509,19 +2541,52 @@ export interface operations {
     readonly postHand: {
         readonly parameters: {
             readonly query?: never;
-            readonly header?: never;
+            readonly header?: {
+                /** @description The same request with the same key has one effect and gets the first answer again. */
+                readonly "Idempotency-Key"?: components["parameters"]["IdempotencyKey"];
+            };
             readonly path?: never;
             readonly cookie?: never;
         };
-        readonly requestBody?: {
+        readonly requestBody: {
             readonly content: {
-                readonly "multipart/form-data": Record<string, never>;
+                readonly "multipart/form-data": {
+                    readonly hand: string;
+                    readonly urdf: string;
+                    /** @description A collision mesh (OBJ, STL, PLY …); as many as the URDF names. */
+                    readonly mesh?: readonly string[];
+                };
             };
         };
         readonly responses: {
+            /** @description It was stored before. */
+            readonly 200: {
+                headers: {
+                    readonly Location: components["headers"]["Location"];
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Hand"];
+                };
+            };
+            /** @description It was stored. */
+            readonly 201: {
+                headers: {
+                    readonly Location: components["headers"]["Location"];
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Hand"];
+                };
+            };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 408: components["responses"]["RequestTimeout"];
+            readonly 409: components["responses"]["Conflict"];
             readonly 413: components["responses"]["TooLarge"];
-            readonly 501: components["responses"]["NotImplemented"];
+            readonly 415: components["responses"]["UnsupportedMediaType"];
+            readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getHand: {

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "engine/geometry/surface_sampling.h"
+#include "engine/hand/urdf_reader.h"
 #include "tests/support/cloud_files.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/workshop.h"
@@ -76,6 +77,34 @@ std::vector<std::string> RunAndReadLines(const std::string& command) {
   }
   pclose(pipe);
   return lines;
+}
+
+TEST(Decoder, ReadsAUrdfAsItWouldBeReadHere) {
+  std::ifstream file(std::string(GRASPDB_SOURCE_DIR) +
+                     "/data/hands/barrett-bh8-280/hand.urdf");
+  const std::string urdf(std::istreambuf_iterator<char>(file), {});
+  const Decoder decoder(MakeOptions());
+  const HandTree tree = decoder.DecodeUrdf(urdf).value();
+  const HandTree here = ReadUrdf(urdf).value();
+  EXPECT_EQ(EncodeHandAnswer(tree), EncodeHandAnswer(here));
+  EXPECT_GT(tree.links.size(), 8u);
+  EXPECT_EQ(decoder.counts().admitted, 1);
+}
+
+TEST(Decoder, SaysOfAUrdfWhatIsWrongWithIt) {
+  const auto refused = Decoder(MakeOptions()).DecodeUrdf("<robot");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnusableInput);
+  EXPECT_EQ(refused.error().field, "urdf");
+  // What is nested deeply costs the helper its stack and time, not us.
+  std::string deep = "<robot name=\"r\">";
+  for (int i = 0; i < 5'000; ++i) deep += "<a>";
+  EXPECT_FALSE(Decoder(MakeOptions()).DecodeUrdf(deep));
+  const ScratchFolder folder;
+  const auto lost = Decoder(MakeImpostor(folder, "exit 3")).DecodeUrdf("");
+  ASSERT_FALSE(lost);
+  EXPECT_EQ(lost.error().code, ErrorCode::kUnusableInput);
+  EXPECT_EQ(lost.error().field, "urdf");
 }
 
 TEST(Decoder, AdmitsEveryEncoding) {

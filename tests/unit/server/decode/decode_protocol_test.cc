@@ -19,6 +19,30 @@ DecodeAnswer MakeAnswer() {
                       "seccomp"};
 }
 
+HandTree MakeTree() {
+  HandTree tree;
+  tree.links.resize(2);
+  tree.links[0].name = "palm";
+  HandTree::Link& finger = tree.links[1];
+  finger.name = "finger";
+  finger.parent = 0;
+  finger.joint.name = "knuckle";
+  finger.joint.type = JointType::kPrismatic;
+  finger.joint.X_PJ = {
+      Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()).toRotationMatrix(),
+      {0.01, 0.02, 0.03}};
+  finger.joint.axis_J = Eigen::Vector3d::UnitY();
+  finger.joint.lower = -0.1;
+  finger.joint.upper = 0.2;
+  finger.joint.mimicked = "other";
+  finger.joint.ratio = 0.5;
+  finger.mass = 0.1;
+  finger.p_LcCM = {0.0, 0.0, 0.04};
+  finger.pieces.push_back(
+      {"finger.obj", {Eigen::Matrix3d::Identity(), {0.0, 0.0, 0.05}}});
+  return tree;
+}
+
 TEST(DecodeProtocol, CarriesARequest) {
   DecodeRequest request;
   request.format = MeshFormat::kStl;
@@ -56,6 +80,60 @@ TEST(DecodeProtocol, CarriesAMesh) {
   EXPECT_EQ((*parsed)->confinement, answer.confinement);
 }
 
+TEST(DecodeProtocol, CarriesAHand) {
+  const HandTree tree = MakeTree();
+  const auto parsed = ParseHandAnswer(EncodeHandAnswer(tree));
+  ASSERT_TRUE(parsed.has_value() && parsed->has_value());
+  ASSERT_EQ((*parsed)->links.size(), 2u);
+  const HandTree::Link& link = (*parsed)->links[1];
+  const HandTree::Link& sent = tree.links[1];
+  EXPECT_EQ(link.name, sent.name);
+  EXPECT_EQ(link.parent, 0);
+  EXPECT_EQ(link.mass, sent.mass);
+  EXPECT_EQ(link.p_LcCM, sent.p_LcCM);
+  EXPECT_EQ(link.joint.name, sent.joint.name);
+  EXPECT_EQ(link.joint.type, sent.joint.type);
+  EXPECT_EQ(link.joint.X_PJ.translation, sent.joint.X_PJ.translation);
+  EXPECT_EQ(link.joint.X_PJ.rotation, sent.joint.X_PJ.rotation);
+  EXPECT_EQ(link.joint.axis_J, sent.joint.axis_J);
+  EXPECT_EQ(link.joint.lower, sent.joint.lower);
+  EXPECT_EQ(link.joint.upper, sent.joint.upper);
+  EXPECT_EQ(link.joint.mimicked, sent.joint.mimicked);
+  EXPECT_EQ(link.joint.ratio, sent.joint.ratio);
+  ASSERT_EQ(link.pieces.size(), 1u);
+  EXPECT_EQ(link.pieces[0].mesh, sent.pieces[0].mesh);
+  EXPECT_EQ(link.pieces[0].X_LM.translation, sent.pieces[0].X_LM.translation);
+}
+
+TEST(DecodeProtocol, RefusesAHandThatCannotBe) {
+  HandTree cycle = MakeTree();
+  cycle.links[1].parent = 1;
+  EXPECT_FALSE(ParseHandAnswer(EncodeHandAnswer(cycle)));
+  HandTree stretched = MakeTree();
+  stretched.links[1].joint.X_PJ.rotation *= 2.0;
+  EXPECT_FALSE(ParseHandAnswer(EncodeHandAnswer(stretched)));
+  const std::vector<uint8_t> good = EncodeHandAnswer(MakeTree());
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_FALSE(ParseHandAnswer(std::span(good).first(size)).has_value());
+  }
+  for (const uint64_t count : {uint64_t{1} << 40, ~uint64_t{0}}) {
+    std::vector<uint8_t> bytes = good;
+    std::memcpy(bytes.data() + 4, &count, 8);
+    EXPECT_FALSE(ParseHandAnswer(bytes).has_value());
+  }
+}
+
+TEST(DecodeProtocol, AMeshIsNoHandAndAHandNoMesh) {
+  EXPECT_FALSE(ParseHandAnswer(EncodeAnswer(MakeAnswer())));
+  EXPECT_FALSE(ParseAnswer(EncodeHandAnswer(MakeTree())));
+  EXPECT_FALSE(ParseUrdfRequest(EncodeRequest({})));
+  std::vector<uint8_t> bytes = EncodeUrdfRequest();
+  bytes.push_back('<');
+  const auto urdf = ParseUrdfRequest(bytes);
+  ASSERT_TRUE(urdf.has_value());
+  EXPECT_EQ(urdf->size(), 1u);
+}
+
 TEST(DecodeProtocol, CarriesAnErrorAndMakesItsTextPrintable) {
   const Error error{ErrorCode::kTooLarge, "too\nlarge \xff", "hint", "mesh"};
   const auto parsed = ParseAnswer(EncodeAnswer(error));
@@ -84,8 +162,8 @@ TEST(DecodeProtocol, RefusesAnswersThatADecoderMustNotGive) {
 TEST(DecodeProtocol, RefusesIndicesAndCountsOutOfRange) {
   const DecodeAnswer answer = MakeAnswer();
   const std::vector<uint8_t> good = EncodeAnswer(answer);
-  // Behind mark and tag: the count of vertices, these, the count of triangles.
-  const std::size_t vertex_count = 5;
+  // Behind the mark: the count of vertices, these, the count of triangles.
+  const std::size_t vertex_count = 4;
   const std::size_t triangle_count =
       vertex_count + 8 + 24 * answer.mesh_O.vertices().size();
   for (const uint64_t count :

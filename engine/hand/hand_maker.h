@@ -2,10 +2,12 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "engine/hand/hand_model.h"
+#include "engine/hand/hand_tree.h"
 
 namespace graspdb {
 
@@ -39,10 +41,11 @@ struct HandAnnotations {
 /** Returns the mesh that a URDF names, in metres. */
 using MeshLoader = std::function<Result<TriangleMesh>(const std::string&)>;
 
-/** Builds a hand from its URDF and annotations. The base link's frame becomes
- H. Every collision mesh is taken as one convex piece of its link.
- @retval kUnusableInput naming the link or joint at fault. */
-Result<HandModel> ReadHand(const std::string& urdf,
+/** Builds a hand from what its URDF and annotations say. The first link's frame
+ becomes H. Every collision mesh is one convex piece of its link.
+ @pre CheckHandTree() has passed the tree.
+ @retval kUnusableInput naming the link, joint or mesh at fault. */
+Result<HandModel> MakeHand(const HandTree& tree,
                            const HandAnnotations& annotations,
                            const MeshLoader& load_mesh);
 
