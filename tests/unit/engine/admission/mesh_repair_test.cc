@@ -341,10 +341,12 @@ TEST(RepairMesh, MakesASolidOfEveryExtraObject) {
   if (folder == nullptr)
     GTEST_SKIP() << "other people's meshes are not in the repository: "
                     "GRASPDB_EXTRA_OBJECTS names a folder";
+  int tried = 0;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".obj") continue;
     SCOPED_TRACE(entry.path().string());
+    ++tried;
     const TriangleMesh soup = workshop::LoadObj(entry.path().string());
     const auto repaired = RepairMesh(soup);
     ASSERT_TRUE(repaired.has_value()) << repaired.error().message;
@@ -366,6 +368,7 @@ TEST(RepairMesh, MakesASolidOfEveryExtraObject) {
     EXPECT_TRUE(IsClosed(*work));
     EXPECT_NEAR(CalcVolume(*work), volume, 0.02 * volume);
   }
+  EXPECT_GT(tried, 0) << folder << " has no mesh";
 }
 
 }  // namespace
