@@ -41,6 +41,10 @@ Result<std::string> ReadBytes(std::FILE* file, const std::string& name) {
 
 }  // namespace
 
+std::string_view CutFolders(std::string_view path) {
+  return path.substr(path.find_last_of("/\\") + 1);
+}
+
 Result<std::string> ReadFileBytes(const std::string& path) {
   if (path == "-") return ReadBytes(stdin, "standard input");
   std::error_code code;

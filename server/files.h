@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "engine/base/result.h"
 
@@ -9,6 +10,9 @@ namespace graspdb {
 
 /** The largest file that is read, and the largest mesh that a server takes. */
 inline constexpr int64_t kMostFileBytes = 64 << 20;
+
+/** What a path, of any system, calls its file: all behind the last slash. */
+std::string_view CutFolders(std::string_view path);
 
 /** A file's bytes; "-" reads standard input.
  @retval kInvalidArgument when it cannot be read.

@@ -1,19 +1,18 @@
 #include "engine/hand/hand_maker.h"
 
-#include <cmath>
 #include <map>
+#include <utility>
 
 namespace graspdb {
 namespace {
 
 // How far a convex piece may be dented, m.
 constexpr double kDent = 1e-4;
-// So many faces draw any convex piece finely.
-constexpr int kMostTriangles = 5000;
 
-Error Fault(const std::string& what, std::string hint = "") {
-  return Error{ErrorCode::kUnusableInput, "hand description: " + what,
-               std::move(hint)};
+// What hand.json or a mesh is to blame for.
+Error Fault(const std::string& what, std::string hint = "",
+            std::string field = "hand") {
+  return MakeHandError(what, std::move(hint), std::move(field));
 }
 
 // Whether no vertex stands out of any face's plane.
@@ -69,13 +68,13 @@ class HandBuilder {
     }
     for (const HandTree::Piece& piece : source.pieces) {
       GRASPDB_TRY(mesh, load_mesh_(piece.mesh));
-      if (mesh.num_triangles() > kMostTriangles) {
+      if (mesh.num_triangles() > kMostPieceTriangles) {
         return Fault(piece.mesh + " has more than 5000 triangles",
-                     "decimate it: it need only show a convex shape");
+                     "decimate it: it need only show a convex shape", "mesh");
       }
       if (!IsConvex(mesh)) {
         return Fault(piece.mesh + " is not convex",
-                     "cut the link's shape into convex meshes");
+                     "cut the link's shape into convex meshes", "mesh");
       }
       link.pieces_L.push_back(CalcTransformed(mesh, piece.X_LM));
     }

@@ -38,11 +38,15 @@ struct HandAnnotations {
   double closing_force{15.0};
 };
 
+/** So many faces draw any convex piece finely. */
+inline constexpr int kMostPieceTriangles = 5000;
+
 /** Returns the mesh that a URDF names, in metres. */
 using MeshLoader = std::function<Result<TriangleMesh>(const std::string&)>;
 
 /** Builds a hand from what its URDF and annotations say. The first link's frame
- becomes H. Every collision mesh is one convex piece of its link.
+ becomes H. Every collision mesh is one convex piece of its link, of at most
+ kMostPieceTriangles, dented by 0.1 mm at most.
  @pre CheckHandTree() has passed the tree.
  @retval kUnusableInput naming the link, joint or mesh at fault. */
 Result<HandModel> MakeHand(const HandTree& tree,

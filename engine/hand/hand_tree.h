@@ -18,6 +18,7 @@ struct HandTree {
   struct Piece {
     std::string mesh;  ///< As the URDF names it.
     RigidTransform X_LM;
+    bool operator==(const Piece&) const = default;
   };
   struct Joint {
     std::string name;
@@ -28,6 +29,7 @@ struct HandTree {
     double upper{0.0};                                 ///< rad or m.
     std::string mimicked;  ///< The joint that it follows; empty: none.
     double ratio{1.0};     ///< q = ratio · q of the mimicked joint.
+    bool operator==(const Joint&) const = default;
   };
   struct Link {
     std::string name;
@@ -36,9 +38,15 @@ struct HandTree {
     double mass{0.0};  ///< kg.
     Eigen::Vector3d p_LcCM{Eigen::Vector3d::Zero()};  ///< m.
     std::vector<Piece> pieces;
+    bool operator==(const Link&) const = default;
   };
   std::vector<Link> links;
+  bool operator==(const HandTree&) const = default;
 };
+
+/** What is wrong with a hand's URDF or what goes with it: kUnusableInput. */
+Error MakeHandError(const std::string& what, std::string hint = "",
+                    std::string field = "urdf");
 
 /** Whether this can be a hand, whoever wrote it: 1 to 64 links and 1 to 64
  pieces, names that tell links and joints apart, parents before children, finite

@@ -17,32 +17,29 @@ RigidTransform ToRigidTransform(const urdf::Pose& pose) {
       ToEigen(pose.position)};
 }
 
-Error Fault(const std::string& what, std::string hint = "") {
-  return Error{ErrorCode::kUnusableInput, "hand description: " + what,
-               std::move(hint), "urdf"};
-}
-
 Result<HandTree::Joint> ToJoint(const urdf::Joint& source) {
   HandTree::Joint joint;
   joint.name = source.name;
   if (source.type == urdf::Joint::PRISMATIC) {
     joint.type = JointType::kPrismatic;
   } else if (source.type == urdf::Joint::FIXED) {
-    return Fault("joint " + source.name + " is fixed",
-                 "move its link's shapes into the parent link");
+    return MakeHandError("joint " + source.name + " is fixed",
+                         "move its link's shapes into the parent link");
   } else if (source.type != urdf::Joint::REVOLUTE) {
-    return Fault("joint " + source.name +
-                 " is neither revolute with limits nor prismatic");
+    return MakeHandError("joint " + source.name +
+                         " is neither revolute with limits nor prismatic");
   }
-  if (!source.limits) return Fault("joint " + source.name + " has no limits");
+  if (!source.limits)
+    return MakeHandError("joint " + source.name + " has no limits");
   joint.X_PJ = ToRigidTransform(source.parent_to_joint_origin_transform);
   joint.axis_J = ToEigen(source.axis).normalized();
   joint.lower = source.limits->lower;
   joint.upper = source.limits->upper;
   if (source.mimic) {
     if (source.mimic->offset != 0.0) {
-      return Fault("joint " + source.name + " mimics another with an offset",
-                   "turn its origin by the offset instead");
+      return MakeHandError(
+          "joint " + source.name + " mimics another with an offset",
+          "turn its origin by the offset instead");
     }
     joint.mimicked = source.mimic->joint_name;
     joint.ratio = source.mimic->multiplier;
@@ -60,14 +57,14 @@ Result<HandTree::Link> ToLink(const urdf::Link& source) {
   for (const urdf::CollisionSharedPtr& collision : source.collision_array) {
     if (!collision->geometry ||
         collision->geometry->type != urdf::Geometry::MESH) {
-      return Fault(
+      return MakeHandError(
           "link " + source.name + " has a collision shape that is no mesh",
           "give it as a convex mesh");
     }
     const auto& mesh = static_cast<const urdf::Mesh&>(*collision->geometry);
     if (mesh.scale.x != 1.0 || mesh.scale.y != 1.0 || mesh.scale.z != 1.0) {
-      return Fault("link " + source.name + " scales " + mesh.filename,
-                   "give the mesh in metres");
+      return MakeHandError("link " + source.name + " scales " + mesh.filename,
+                           "give the mesh in metres");
     }
     link.pieces.push_back({mesh.filename, ToRigidTransform(collision->origin)});
   }
@@ -82,7 +79,7 @@ Result<void> AddLinks(const urdf::ModelInterface& model,
   tree.links.push_back(std::move(link));
   for (const urdf::JointSharedPtr& joint : source.child_joints) {
     const auto child = model.getLink(joint->child_link_name);
-    if (!child) return Fault("joint " + joint->name + " moves no link");
+    if (!child) return MakeHandError("joint " + joint->name + " moves no link");
     GRASPDB_TRY(below, ToLink(*child));
     GRASPDB_TRY(moved_by, ToJoint(*joint));
     below.parent = index;
@@ -96,9 +93,9 @@ Result<void> AddLinks(const urdf::ModelInterface& model,
 
 Result<HandTree> ReadUrdf(const std::string& urdf) {
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf);
-  if (!model) return Fault("the URDF cannot be read");
+  if (!model) return MakeHandError("the URDF cannot be read");
   const urdf::LinkConstSharedPtr root = model->getRoot();
-  if (!root) return Fault("it has no root link");
+  if (!root) return MakeHandError("it has no root link");
   HandTree tree;
   GRASPDB_TRY(base, ToLink(*root));
   GRASPDB_TRY_VOID(AddLinks(*model, *root, std::move(base), tree));

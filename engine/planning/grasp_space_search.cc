@@ -126,7 +126,7 @@ class Swarm {
           random.NextIndex(static_cast<int>(leads_.size())))];
       const Grasp& found = *niche[static_cast<size_t>(
           random.NextIndex(static_cast<int>(niche.size())))];
-      // Near enough to hold like it, far enough to be another: who knows.
+      // It must be near to hold like that one and far to be another.
       const double scale = random.NextUniform();
       particle.here = space_.Perturb(
           {found.configuration.X_OH,
@@ -296,6 +296,7 @@ class Swarm {
                            .least_gripped = swarm_.min_grip});
   }
 
+  // Robust ones are kept; of the others, of each approach, the surest.
   void Keep(const FoundGrasp& found) {
     if (found.robust) {
       archive_.Insert(found.grasp);
@@ -309,6 +310,7 @@ class Swarm {
     }
   }
 
+  // Points into what Keep() changes: to be called after it.
   void UpdateLeads() {
     std::map<int, std::vector<const Grasp*>> niches;
     for (const Grasp& grasp : archive_.grasps()) {

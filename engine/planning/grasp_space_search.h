@@ -23,7 +23,8 @@ struct GraspSearchResult {
  measure, Eq. (1). Particles start at `seeds`; a particle's move stops at the
  first contact; at each place the fingers close, and every stable distinct
  grasp is kept. Particles follow the best of their own niche (approach
- direction), and one that no longer improves starts again at the next seed.
+ direction), where no grasp has fallen through, and one that no longer improves
+ starts again: at the next seed, aimed at the part, or near what was found.
  @param whole  When given, grasps must also hold, free of collision, on this.
  Deterministic for a seed on any number of threads; ends early when cancelled.
  @paper{Sec. IV} [Clerc and Kennedy 2002] */

@@ -67,7 +67,7 @@ Result<Parameters> ReadParameters(const std::string& given) {
 Result<void> ReadMesh(const std::string& path, ImportOrder& order) {
   GRASPDB_TRY(bytes, ReadFileBytes(path));
   order.bytes = std::move(bytes);
-  if (path != "-") order.file_name = path.substr(path.find_last_of('/') + 1);
+  if (path != "-") order.file_name = CutFolders(path);
   return {};
 }
 

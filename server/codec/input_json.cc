@@ -371,7 +371,6 @@ Result<HandFile> HandFileFromJson(const std::string& text) {
   ReadGraspit(fields, file.graspit);
   GRASPDB_TRY_VOID(fields.Finish());
   if (file.title.empty()) file.title = file.annotations.name;
-  if (file.urdf.empty()) file.urdf = "hand.urdf";
   return file;
 }
 

@@ -53,7 +53,7 @@ struct GraspitModel {
 /** hand.json, see data/hands. */
 struct HandFile {
   std::string title;
-  std::string urdf;  ///< File name of the URDF.
+  std::string urdf{"hand.urdf"};  ///< File name of the URDF.
   HandAnnotations annotations;
   std::optional<GraspitModel> graspit;
 };

@@ -25,6 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// More than any hand's.
+constexpr std::size_t kMostUrdfBytes = std::size_t{1} << 20;
 // More than any mesh within sensible limits needs.
 constexpr std::size_t kMostAnswerBytes = std::size_t{512} << 20;
 
@@ -237,7 +239,8 @@ auto RunHelper(const DecoderOptions& options, const Subject& subject,
           fmt::format("the decoder gave up after {:.3g} s", options.deadline));
     case TalkEnd::kTooMuch:
       ++counts.crashed;
-      return MakeInputError(subject, "the decoder said too much");
+      return MakeInputError(
+          subject, fmt::format("what is in the {} is too large", subject.name));
     case TalkEnd::kAnswered:
       break;
   }
@@ -289,6 +292,12 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
 }
 
 Result<HandTree> Decoder::DecodeUrdf(const std::string& urdf) const {
+  if (urdf.size() > kMostUrdfBytes) {
+    return Error{ErrorCode::kTooLarge,
+                 fmt::format("the URDF has {} bytes; the limit is {}",
+                             urdf.size(), kMostUrdfBytes),
+                 "", kUrdf.field};
+  }
   DecodeCounts counts;
   auto tree =
       RunHelper(options_, kUrdf, EncodeUrdfRequest(),

@@ -61,6 +61,7 @@ class Decoder {
   /** What a URDF says of a hand, see ReadUrdf().
    @retval kUnusableInput when it says nothing that a hand can be, or the helper
      crashed, ran out of memory or missed the deadline on it.
+   @retval kTooLarge over 1 MiB.
    @retval kInternal when the helper cannot be started or confined. */
   Result<HandTree> DecodeUrdf(const std::string& urdf) const;
 

@@ -49,13 +49,6 @@ class Writer {
     for (const double x : X.rotation.reshaped()) Write(x);
     for (const double x : X.translation) Write(x);
   }
-  void WriteError(const Error& error) {
-    Write(kErrorMark);
-    Write(static_cast<uint8_t>(error.code));
-    WriteText(error.message);
-    WriteText(error.hint);
-    WriteText(error.field);
-  }
   void WriteMesh(const TriangleMesh& mesh) {
     WritePoints(mesh.vertices());
     Write<uint64_t>(mesh.triangles().size());
@@ -214,6 +207,16 @@ class Reader {
   bool ok_{true};
 };
 
+std::vector<uint8_t> EncodeError(const Error& error) {
+  Writer writer;
+  writer.Write(kErrorMark);
+  writer.Write(static_cast<uint8_t>(error.code));
+  writer.WriteText(error.message);
+  writer.WriteText(error.hint);
+  writer.WriteText(error.field);
+  return writer.TakeBytes();
+}
+
 }  // namespace
 
 std::vector<uint8_t> EncodeRequest(const DecodeRequest& request) {
@@ -268,11 +271,8 @@ std::optional<std::span<const uint8_t>> ParseUrdfRequest(
 }
 
 std::vector<uint8_t> EncodeHandAnswer(const Result<HandTree>& answer) {
+  if (!answer) return EncodeError(answer.error());
   Writer writer;
-  if (!answer) {
-    writer.WriteError(answer.error());
-    return writer.TakeBytes();
-  }
   writer.Write(kHandAnswerMark);
   writer.Write<uint64_t>(answer->links.size());
   for (const HandTree::Link& link : answer->links) {
@@ -310,11 +310,8 @@ std::optional<Result<HandTree>> ParseHandAnswer(
 }
 
 std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
+  if (!answer) return EncodeError(answer.error());
   Writer writer;
-  if (!answer) {
-    writer.WriteError(answer.error());
-    return writer.TakeBytes();
-  }
   writer.Write(kAnswerMark);
   writer.WriteMesh(answer->mesh_O);
   writer.WriteMesh(answer->work_O);

@@ -11,6 +11,7 @@
 #include "engine/hand/hand_maker.h"
 #include "server/codec/input_json.h"
 #include "server/decode/decode_client.h"
+#include "server/files.h"
 #include "server/ids.h"
 #include "server/jobs/job_runner.h"
 
@@ -65,12 +66,6 @@ std::string CalcHandSha256(const HandFiles& files) {
     content += CalcSha256(name) + CalcSha256(bytes);
   }
   return CalcSha256(content);
-}
-
-// A path without its folders: what a hand's mesh goes by.
-std::string_view CutFolders(std::string_view path) {
-  const size_t slash = path.find_last_of("/\\");
-  return slash == std::string_view::npos ? path : path.substr(slash + 1);
 }
 
 Result<std::shared_ptr<const HandModel>> BuildHand(const StoredHand& hand,
@@ -160,7 +155,7 @@ Result<AddedHand> Service::AddHand(const HandFiles& files) {
     DecodeRequest request;
     request.file_name = name;
     request.limits.max_bytes = options_.max_mesh_bytes;
-    request.limits.max_triangles = options_.max_triangles;
+    request.limits.max_triangles = kMostPieceTriangles;
     auto decoded = decoder_->Decode(
         {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
         request);

@@ -4,6 +4,7 @@
 
 #include "server/codec/mesh_writer.h"
 #include "server/codec/record_json.h"
+#include "server/files.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"
 
@@ -62,7 +63,7 @@ Result<HttpResponse> GetHandMesh(const Service& service,
   const std::string extension = file.substr(std::min(dot + 1, file.size()));
   const bool stl = extension == "stl" || extension == "STL";
   for (const auto& [name, mesh] : hand.meshes) {
-    if (name.substr(name.rfind('/') + 1) != file) continue;
+    if (CutFolders(name) != file) continue;
     HttpResponse response = MakeFileResponse(
         WriteMesh(mesh, stl ? MeshFormat::kStl : MeshFormat::kObj),
         file.substr(0, dot), stl ? "stl" : "obj");

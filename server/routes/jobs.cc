@@ -41,12 +41,11 @@ Result<HttpResponse> DeleteJob(Service& service, const HttpRequest& request) {
   return MakeJsonResponse(200, ToJson(job));
 }
 
-Result<HttpResponse> StreamJob(const Service& service,
-                               const std::shared_ptr<WorkSlots>& slots,
+Result<HttpResponse> StreamJob(const Service& service, WorkSlots& slots,
                                const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(job, service.FindJob(request.path_parameters.at("id")));
-  auto place = slots->Take(request.stop);
+  auto place = slots.Take(request.stop);
   if (!place) {
     return Error{ErrorCode::kOverloaded,
                  "As many event streams are open as the server allows.",
@@ -55,7 +54,7 @@ Result<HttpResponse> StreamJob(const Service& service,
   HttpResponse response;
   response.content_type = "text/event-stream";
   response.headers.emplace_back("Cache-Control", "no-store");
-  response.next_piece = [slots, place = *std::move(place),
+  response.next_piece = [place = *std::move(place),
                          events = std::make_shared<JobEvents>(
                              service, std::move(job),
                              std::string(request.FindHeader("last-event-id")),
@@ -79,7 +78,7 @@ void AddJobRoutes(Router& router, Service& service,
               [&service,
                slots = std::make_shared<WorkSlots>(
                    options.max_event_streams, 0)](const HttpRequest& request) {
-                return StreamJob(service, slots, request);
+                return StreamJob(service, *slots, request);
               }});
   router.Add({"DELETE", "/v1/jobs/{id}", BodyKind::kNone,
               [&service](const HttpRequest& request) {

@@ -161,7 +161,7 @@ def test_a_hand_is_stored_once_and_under_its_name_only(contract, hands):
         assert stored[same] == barrett[same]
     assert hands.call("postHand", 200, files=hand_files("claw")) == stored
     problem = hands.call("postHand", 409,
-                            files=hand_files("claw", closing_force_n=9))
+                         files=hand_files("claw", closing_force_n=9))
     assert "claw" in problem["detail"]
     urdf = hands.call("getUrdf", 200, path={"name": "claw"})
     assert urdf == (ROOT / "data/hands/barrett-bh8-280/hand.urdf").read_bytes()
@@ -219,13 +219,20 @@ def test_any_jointed_hand_can_be_stored(hands):
     ("box.obj: ", pair_files("bad", mesh=b"not a mesh")),
     ("not convex", pair_files("bad", mesh=(
         ROOT / "data" / "mug" / "latte.obj").read_bytes())),
-    ("triangles", pair_files("bad", mesh=(
-        ROOT / "data" / "power_drill" / "classic.obj").read_bytes())),
 ], ids=lambda value: value.replace(" ", "-") if isinstance(value, str) else "")
 def test_what_is_no_hand_is_a_422_and_nothing_is_stored(hands, what, form):
     problem = hands.call("postHand", 422, files=form)
     assert what in problem["detail"]
     hands.call("getHand", 404, path={"name": "bad"})
+
+
+def test_a_hand_larger_than_any_is_a_413(hands):
+    fine = (ROOT / "data" / "power_drill" / "classic.obj").read_bytes()
+    for field, form in (
+            ("mesh", pair_files("bad", mesh=fine)),
+            ("urdf", pair_files("bad", urdf=PAIR + "<!--" + "x" * (1 << 20) + "-->"))):
+        assert hands.call("postHand", 413, files=form)["field"] == field
+        hands.call("getHand", 404, path={"name": "bad"})
 
 
 def test_a_form_without_a_hands_files_is_a_400(hands):

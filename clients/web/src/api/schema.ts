@@ -1217,8 +1217,14 @@ export interface components {
                 string,
                 string
             ][];
-            /** @description Where GraspIt! has its model, for as=graspit. */
-            readonly graspit?: Record<string, never>;
+            /** @description The same hand among the robots of GraspIt!, for as=graspit. */
+            readonly graspit?: {
+                /** @description Its file, below the folder $GRASPIT. */
+                readonly robot: string;
+                readonly p_HG?: components["schemas"]["Point"];
+                readonly x_axis_H?: components["schemas"]["Direction"];
+                readonly z_axis_H?: components["schemas"]["Direction"];
+            };
         };
         readonly HandList: {
             readonly items: readonly components["schemas"]["Hand"][];
