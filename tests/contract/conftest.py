@@ -16,6 +16,11 @@ QUICK = {
 }
 
 
+def pytest_configure(config):
+    """What goes wrong in a client's thread fails the test."""
+    config.addinivalue_line("filterwarnings", "error::pytest.PytestUnhandledThreadExceptionWarning")
+
+
 @pytest.fixture(scope="session")
 def binary():
     path = os.environ.get("GRASPDB_BINARY")
