@@ -49,7 +49,7 @@ struct LearnRequest {
 };
 
 /** Sec. IV: configuration space, then grasp space, of one part of an example.
- @retval kCancelled; a deadline instead returns what was found so far. */
+ @retval kCancelled, also past a deadline: half a grasp space is none. */
 Result<GraspSpace> Learn(const LearnRequest& request,
                          ExecutionContext& context);
 
@@ -70,6 +70,9 @@ struct TransferRecord {
   double open_close_epsilon_whole{0.0};  ///< Baseline; 0 when it fails.
   std::vector<double> transferred_clearances;  ///< As GraspSpace has them.
   std::vector<double> assembled_clearances;
+  /** The deadline ended the search: what there is is the best so far, and that
+   there is no grasp means nothing. */
+  bool cut{false};
   Robustness robust;             ///< Of 32 perturbed copies.
   double penetration{0.0};       ///< Deepest overlap of hand and object, m.
   double transfer_seconds{0.0};  ///< Of one core; not reproducible.
@@ -110,7 +113,7 @@ struct TransferRequest {
   /** When set, those that promise most are tried first, the parts in turn, and
    no more once so many grasps hold transfer.sure_grip of their copies: all with
    replan.quick_climb_samples, and if that is not enough those that came nearest
-   once more with replan.climb_samples. */
+   once more with replan.climb_samples and replan.searches. */
   std::optional<int> enough;
   bool assemble{true};
   Parameters parameters;
@@ -123,13 +126,13 @@ struct TransferResult {
   std::vector<PartAlignment> alignments;  ///< One per novel part.
   /** Part by part, source by source; as tried when `enough` was set. */
   std::vector<TransferRecord> records;
-  bool complete{true};  ///< False when the deadline cut it.
+  bool complete{true};  ///< False when the deadline cut it or it was cancelled.
 };
 
 /** Sec. V: maps, replans and assembles source grasps on a novel object. The
  source grasps are drawn by (seed, grasp space) before the novel object is
  looked at, equally from each quartile of eps of those that keep free what must
- be.
+ be. A deadline of the context ends it with what was found.
  @retval kCancelled. */
 Result<TransferResult> Transfer(const TransferRequest& request,
                                 ExecutionContext& context);

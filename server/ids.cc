@@ -25,13 +25,6 @@ std::string ToHex(const Digest& digest) {
   return text;
 }
 
-using Milliseconds = std::chrono::milliseconds;
-
-int64_t CalcUnixMilliseconds() {
-  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<Milliseconds>(since_epoch).count();
-}
-
 // 48 bits of time and 12 of counter, never the same twice in this process.
 uint64_t NextTimestamp() {
   static std::mutex mutex;
@@ -90,14 +83,22 @@ std::string MakeUuid() {
                      random & 0xffffffffffff);
 }
 
-std::string FormatNow() {
-  const int64_t now = CalcUnixMilliseconds();
-  const std::time_t seconds = now / 1000;
+int64_t CalcUnixMilliseconds() {
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch)
+      .count();
+}
+
+std::string FormatTime(int64_t unix_milliseconds) {
+  const std::time_t seconds = unix_milliseconds / 1000;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z",
                      utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
-                     utc.tm_hour, utc.tm_min, utc.tm_sec, now % 1000);
+                     utc.tm_hour, utc.tm_min, utc.tm_sec,
+                     unix_milliseconds % 1000);
 }
+
+std::string FormatNow() { return FormatTime(CalcUnixMilliseconds()); }
 
 }  // namespace graspdb

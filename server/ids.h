@@ -23,7 +23,13 @@ std::string MakeContentId(std::string_view content);
  one process and millisecond. */
 std::string MakeUuid();
 
-/** Now, as RFC 3339 UTC with milliseconds: "2024-05-01T12:00:00.000Z". */
+/** Now, in milliseconds of Unix time. */
+int64_t CalcUnixMilliseconds();
+
+/** RFC 3339 UTC: "2024-05-01T12:00:00.000Z". */
+std::string FormatTime(int64_t unix_milliseconds);
+
+/** Now, as RFC 3339 UTC. */
 std::string FormatNow();
 
 }  // namespace graspdb

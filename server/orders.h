@@ -16,6 +16,16 @@ namespace graspdb {
 
 inline constexpr char kDefaultHand[] = "barrett-bh8-280";
 
+/** What goes with any job. */
+struct JobTerms {
+  /** When not empty: a job with the same key is answered instead of a new one.
+   */
+  std::string idempotency_key{};
+  /** How long it may take from now on, waiting included, s. A transfer then
+   answers what it has found; all else fails with kDeadlineExceeded. */
+  std::optional<double> deadline{};
+};
+
 /** A mesh file to be stored as an object. */
 struct ImportOrder {
   std::string bytes;
@@ -72,6 +82,37 @@ struct SegmentOrder {
   std::vector<std::string> face_labels;
   uint64_t seed{1};
   bool cascade{false};  ///< Grasps that depend on the old parts go.
+};
+
+/** Which stored grasps are wanted. Empty fields do not filter. */
+struct GraspQuery {
+  enum class Sort {
+    kEpsilon,  ///< Highest eps first.
+    kHybrid,   ///< Lowest measure of Eq. (1) first.
+    kRobust,   ///< Highest share first, unknown last.
+    kNewest,   ///< Latest stored first.
+    kMerit,    ///< What holds in a simulator first, then the surest grip.
+  };
+  std::string category;
+  std::vector<std::string> part_labels;  ///< Any of these.
+  std::vector<std::string> keep_free;    ///< Parts that the hand keeps …
+  double min_clearance{0.0};             ///< … so far off, m.
+  std::string hand;
+  std::string object_id;
+  std::string grasp_space_id;
+  std::string transfer_id;
+  std::optional<GraspStage> stage;
+  std::optional<double> min_epsilon;
+  bool held{false};  ///< Only what a simulator has found to hold every push.
+  Sort sort{Sort::kEpsilon};
+  PageRequest page;
+};
+
+/** POST /v1/verifications: which stored grasps a simulator judges. */
+struct VerifyOrder {
+  GraspQuery query;   ///< Which; its page is of no account.
+  int limit{0};       ///< Most grasps, best first; 0: all.
+  bool again{false};  ///< Those as well that have a verdict.
 };
 
 /** Which stored objects a search by shape compares with. */

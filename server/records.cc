@@ -129,6 +129,10 @@ const char* ToString(JobKind kind) {
       return "learn";
     case JobKind::kTransfer:
       return "transfer";
+    case JobKind::kSegment:
+      return "segment";
+    case JobKind::kVerify:
+      return "verify";
   }
   return "";
 }
@@ -184,9 +188,7 @@ Result<GraspStage> ParseGraspStage(const std::string& text) {
 }
 
 Result<JobKind> ParseJobKind(const std::string& text) {
-  return Parse(
-      text, "kind",
-      std::array{JobKind::kImport, JobKind::kLearn, JobKind::kTransfer});
+  return Parse(text, "kind", kJobKinds);
 }
 
 Result<JobState> ParseJobState(const std::string& text) {

@@ -293,7 +293,10 @@ struct TransferAnswer {
   std::shared_ptr<const HandModel> hand;
 };
 
-enum class JobKind { kImport, kLearn, kTransfer };
+enum class JobKind { kImport, kLearn, kTransfer, kSegment, kVerify };
+inline constexpr std::array kJobKinds{JobKind::kImport, JobKind::kLearn,
+                                      JobKind::kTransfer, JobKind::kSegment,
+                                      JobKind::kVerify};
 enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
 
 struct StoredJob {
@@ -304,12 +307,14 @@ struct StoredJob {
   std::string stage;     ///< What it is doing, in words.
   std::string request;   ///< The order as JSON, without the bytes of a mesh.
   /** What a job that succeeded made: the id of a transfer (kTransfer) or of the
-   object (kImport, kLearn). */
+   object (kImport, kLearn, kSegment); empty for kVerify. */
   std::string result_id;
   std::optional<Error> error;
   std::optional<double> eta_seconds;  ///< Known while it runs.
   /** Grasps that a running transfer has found so far. */
   std::optional<int64_t> grasps_found;
+  /** When it is to have ended, in milliseconds of Unix time. */
+  std::optional<int64_t> deadline;
   std::string created_at;
   std::string started_at;   ///< Empty until then.
   std::string finished_at;  ///< Empty until then.
@@ -362,7 +367,7 @@ struct CheckReport {
 const char* ToString(ErrorCode code);    // invalid_argument …, as errors.yaml
 const char* ToString(ObjectRole role);   // example, novel
 const char* ToString(GraspStage stage);  // learned, transfer, assembly
-const char* ToString(JobKind kind);      // import, learn, transfer
+const char* ToString(JobKind kind);      // import, learn, …
 const char* ToString(JobState state);    // queued … cancelled
 const char* ToString(SegmentationVerdict verdict);
 Result<ErrorCode> ParseErrorCode(const std::string& text);

@@ -26,14 +26,22 @@ class ExecutionContext {
   ExecutionContext& operator=(const ExecutionContext&) = delete;
 
   void Cancel() { cancelled_ = true; }
-  /** This one is cancelled, too, when the parent is; outlived by it. */
+  /** This one is cancelled and timed out, too, when the parent is; outlived by
+   it. */
   void set_parent(const ExecutionContext* parent) { parent_ = parent; }
   void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
 
   /** True once cancelled or past the deadline: finish up. */
   bool Cancelled() const {
-    return cancelled_ || (deadline_ && Clock::now() > *deadline_) ||
+    return cancelled_ || IsPastDeadline() ||
            (parent_ != nullptr && parent_->Cancelled());
+  }
+
+  /** True when nobody cancelled and only the deadline has passed: what was
+   found until then is wanted. */
+  bool TimedOut() const {
+    return !IsCancelledByCall() &&
+           (IsPastDeadline() || (parent_ != nullptr && parent_->TimedOut()));
   }
 
   void ReportProgress(const std::string& stage, double share) {
@@ -41,6 +49,11 @@ class ExecutionContext {
   }
 
  private:
+  bool IsPastDeadline() const { return deadline_ && Clock::now() > *deadline_; }
+  bool IsCancelledByCall() const {
+    return cancelled_ || (parent_ != nullptr && parent_->IsCancelledByCall());
+  }
+
   std::atomic<bool> cancelled_{false};
   std::optional<Clock::time_point> deadline_;
   const ExecutionContext* parent_{nullptr};

@@ -128,6 +128,8 @@ struct ReplanParameters {
   double behind_cost{0.1};
   int climb_samples{600};
   int quick_climb_samples{100};
+  int searches{3};
+  double likely_grip{0.75};
 
   template <class Self, class F>
   static void Visit(Self& self, F&& f) {
@@ -189,6 +191,12 @@ struct ReplanParameters {
     f("quick_climb_samples", self.quick_climb_samples,
       ParameterInfo{"1", 0, 1e6,
                     "ours: of them at first, when a few sure grasps do"});
+    f("searches", self.searches,
+      ParameterInfo{"1", 1, 100,
+                    "ours: with their climbs, at most, until one is likely"});
+    f("likely_grip", self.likely_grip,
+      ParameterInfo{"1", 0, 1,
+                    "ours: share of copies held; below it search again"});
   }
   bool operator==(const ReplanParameters&) const = default;
 };

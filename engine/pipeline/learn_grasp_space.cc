@@ -48,6 +48,9 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
                        learned.free_support_vectors, parameters,
                        DeriveSeed(request.seed, {kSwarm}), swarm_context);
 
+  if (context.Cancelled()) {
+    return Error{ErrorCode::kCancelled, "learning was cancelled"};
+  }
   GraspSpace result;
   result.grasps = std::move(found.grasps);
   result.curve = std::move(learned.rounds);

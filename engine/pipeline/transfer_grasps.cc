@@ -72,7 +72,7 @@ class Transferrer {
     }
     context_.ReportProgress("aligning", 0.0);
     Prepare(result);
-    if (context_.Cancelled()) {
+    if (context_.Cancelled() && !context_.TimedOut()) {
       return Error{ErrorCode::kCancelled, "the transfer was cancelled"};
     }
     TryAll(result);
@@ -160,23 +160,31 @@ class Transferrer {
     return start;
   }
 
+  // How much is tried for one source; see ReplanOptions.
+  struct Effort {
+    int climb_samples;
+    int searches;
+
+    bool operator==(const Effort&) const = default;
+  };
+
   // All sources; or, when a few sure grasps are enough, all with few tries
   // until there are so many, and only then those that came nearest with more.
   void TryAll(TransferResult& result) {
     std::vector<TransferRecord>& records = result.records;
     const ReplanParameters& replan = parameters_.replan;
+    const Effort whole{replan.climb_samples, replan.searches};
     if (!request_.enough) {
-      Try(records, MakeOrder(records.size()), replan.climb_samples, 1.0,
-          result);
+      Try(records, MakeOrder(records.size()), whole, 1.0, result);
       return;
     }
     SortByPromise(records);
-    const int climb =
-        std::min(replan.quick_climb_samples, replan.climb_samples);
+    const Effort quick{
+        std::min(replan.quick_climb_samples, replan.climb_samples), 1};
     const int tried =
-        Try(records, MakeOrder(records.size()), climb, 0.8, result);
+        Try(records, MakeOrder(records.size()), quick, 0.8, result);
     records.resize(static_cast<size_t>(tried));
-    if (found_ >= *request_.enough || climb == replan.climb_samples) return;
+    if (found_ >= *request_.enough || quick == whole) return;
     std::vector<int> unsure;
     for (int i = 0; i < tried; ++i) {
       const bool kept_free =
@@ -189,7 +197,7 @@ class Transferrer {
     std::stable_sort(unsure.begin(), unsure.end(), [&](int a, int b) {
       return records[a].robust.gripped > records[b].robust.gripped;
     });
-    Try(records, unsure, replan.climb_samples, 1.0, result);
+    Try(records, unsure, whole, 1.0, result);
   }
 
   static std::vector<int> MakeOrder(size_t count) {
@@ -201,7 +209,7 @@ class Transferrer {
   // Tries records, anew, until there are enough sure ones. @returns how many of
   // the order were tried; the other records are as they were.
   int Try(std::vector<TransferRecord>& records, const std::vector<int>& order,
-          int climb_samples, double end, TransferResult& result) {
+          const Effort& effort, double end, TransferResult& result) {
     const auto count = static_cast<int>(order.size());
     std::vector<TransferRecord> tried(order.size());
     std::vector<char> whole(order.size(), 0);
@@ -212,10 +220,11 @@ class Transferrer {
         [&](int i, const Wanted& wanted) {
           tried[i].part = records[order[i]].part;
           tried[i].source_grasp = records[order[i]].source_grasp;
-          TransferOne(tried[i], climb_samples,
+          TransferOne(tried[i], effort,
                       [&] { return wanted() && !context_.Cancelled(); });
           whole[i] = context_.Cancelled() ? 0 : 1;
-          if (whole[i] == 0) complete = false;
+          tried[i].cut = whole[i] == 0;
+          if (tried[i].cut) complete = false;
         },
         [&](int i) {
           TransferRecord& record = records[order[i]];
@@ -286,7 +295,7 @@ class Transferrer {
   }
 
   // One source grasp through all stages; touches its own record only.
-  void TransferOne(TransferRecord& record, int climb_samples,
+  void TransferOne(TransferRecord& record, const Effort& effort,
                    const Wanted& wanted) const {
     if (!wanted()) return;
     const uint64_t p = record.part;
@@ -322,7 +331,8 @@ class Transferrer {
     ReplanResult on_part =
         Replan(hand_, task, *pair.solid_N, parameters_,
                DeriveSeed(request_.seed, {kReplan, p, s}),
-               {.climb_samples = request_.assemble ? 0 : climb_samples,
+               {.climb_samples = request_.assemble ? 0 : effort.climb_samples,
+                .searches = request_.assemble ? 1 : effort.searches,
                 .grip = !request_.assemble,
                 .epsilon_to_beat = record.open_close_epsilon_part,
                 .wanted = wanted});
@@ -346,7 +356,8 @@ class Transferrer {
       ReplanResult on_whole =
           Assemble(hand_, task, *on_part.grasp, *whole_N_, parameters_,
                    DeriveSeed(request_.seed, {kAssemble, p, s}),
-                   {.climb_samples = climb_samples,
+                   {.climb_samples = effort.climb_samples,
+                    .searches = effort.searches,
                     .epsilon_to_beat = record.open_close_epsilon_whole,
                     .wanted = wanted});
       record.assembly_seconds = ThreadSeconds() - replanned;

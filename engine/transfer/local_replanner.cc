@@ -110,14 +110,19 @@ class Replanner {
   }
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
-    std::vector<Rated> ranked = RankStarts(starts);
-    int cycle = 0;
-    do {
-      Anneal(ranked[cycle % ranked.size()], kReaches[cycle % 3]);
-    } while (!best_ && ++cycle < replan_.cycles && IsWanted());
-    if (!best_) return {furthest_, std::nullopt};
-    if (UsesGrip()) Climb();
-    return {TransferOutcome::kSucceeded, std::move(best_)};
+    const std::vector<Rated> ranked = RankStarts(starts);
+    std::optional<Kept> best;
+    for (int i = 0; i < options_.searches; ++i) {
+      best_.reset();
+      Search(ranked);
+      if (best_ && (!best || best_->merit > best->merit)) best = best_;
+      if (!best_ || !IsWanted() || !UsesGrip() ||
+          best->merit.sure >= replan_.likely_grip) {
+        break;
+      }
+    }
+    if (!best) return {furthest_, std::nullopt};
+    return {TransferOutcome::kSucceeded, std::move(best->grasp)};
   }
 
  private:
@@ -132,6 +137,33 @@ class Replanner {
     Sample sample;
     double value;  // Of Eq. (6).
   };
+
+  // What chooses between grasps: how sure the grip is, then, as long as that is
+  // not enough, how well the motors' forces balance, then eps.
+  struct Merit {
+    double sure{-2.0};  // Share of copies held, up to what is enough, less what
+                        // it costs not to beat open-close; -2: no grasp.
+    double unbalanced{0.0};  // Minus CalcGrip(); 0 when the grip is enough.
+    double epsilon{0.0};
+
+    auto operator<=>(const Merit&) const = default;
+  };
+
+  struct Kept {
+    Grasp grasp;
+    Merit merit;
+    Sample sample;  // How it came about.
+  };
+
+  // Anneals until there is a grasp, one start after the other, farther on each
+  // time it is called, and climbs from there.
+  void Search(const std::vector<Rated>& ranked) {
+    for (int i = 0; !best_ && i < replan_.cycles && IsWanted(); ++i) {
+      Anneal(ranked[cycle_ % ranked.size()], kReaches[cycle_ % 3]);
+      ++cycle_;
+    }
+    if (best_ && UsesGrip()) Climb();
+  }
 
   // The best one first; an aimed one draws back where the open hand collides.
   std::vector<Rated> RankStarts(const std::vector<RigidTransform>& starts) {
@@ -211,27 +243,19 @@ class Replanner {
   void Climb() {
     int since_gain = 0;
     for (int i = 0; i < options_.climb_samples && IsWanted(); ++i) {
-      if (merit_.sure >= replan_.enough_grip &&
+      if (best_->merit.sure >= replan_.enough_grip &&
           since_gain >= replan_.patience) {
         break;
       }
       const int gains_before = num_gains_;
-      const auto next = DrawFree(best_sample_, kClimbReaches[i % 2]);
+      const auto next = DrawFree(best_->sample, kClimbReaches[i % 2]);
       if (next) Evaluate(*next);
       since_gain = num_gains_ == gains_before ? since_gain + 1 : 0;
     }
   }
 
-  // What chooses between grasps: how sure the grip is, then, as long as that is
-  // not enough, how well the motors' forces balance, then eps.
-  struct Merit {
-    double sure{-2.0};  // Share of copies held, up to what is enough, less what
-                        // it costs not to beat open-close; -2: no grasp.
-    double unbalanced{0.0};  // Minus CalcGrip(); 0 when the grip is enough.
-    double epsilon{0.0};
-
-    auto operator<=>(const Merit&) const = default;
-  };
+  // Of the best so far.
+  Merit BestMerit() const { return best_ ? best_->merit : Merit{}; }
 
   double CalcCost(double epsilon) const {
     return epsilon > options_.epsilon_to_beat ? 0.0 : replan_.behind_cost;
@@ -241,7 +265,8 @@ class Replanner {
 
   // What a grasp must hold to be better than the best.
   double CalcShareToBeat(const Grasp& grasp) const {
-    return std::max(kLeastGrip, merit_.sure + CalcCost(grasp.quality.epsilon));
+    return std::max(kLeastGrip,
+                    BestMerit().sure + CalcCost(grasp.quality.epsilon));
   }
 
   // @param share  Of the copies that are held.
@@ -259,8 +284,9 @@ class Replanner {
   // Whether it is worth a closer look.
   bool MayBeBetter(const Grasp& grasp) const {
     const double epsilon = grasp.quality.epsilon;
-    if (!best_ || epsilon > merit_.epsilon) return true;
-    return UsesGrip() && merit_.sure < replan_.enough_grip - CalcCost(epsilon);
+    if (!best_ || epsilon > best_->merit.epsilon) return true;
+    return UsesGrip() &&
+           best_->merit.sure < replan_.enough_grip - CalcCost(epsilon);
   }
 
   // Closes the fingers and keeps the grasp if it is the best that counts. The
@@ -297,7 +323,7 @@ class Replanner {
     const Grasp timed = TimeFingers(hand_, estimate, solid_, parameters_,
                                     Precision::kEstimated);
     const double share = CalcShare(timed);
-    if (!(MakeMerit(timed, share) > merit_)) return;
+    if (!(MakeMerit(timed, share) > BestMerit())) return;
     if (Keep(sample, timed.q_pregrasp, share)) return;
     // Fingers that are open otherwise may be free, or reach it, exactly.
     const EvaluatedGrasp exact = CloseAndJudge(
@@ -320,10 +346,8 @@ class Replanner {
     Note(ToOutcome(exact.failure));
     if (!exact.ok() || !Counts(exact.grasp)) return false;
     const Merit merit = MakeMerit(exact.grasp, share);
-    if (!(merit > merit_) || !CanBeReached(exact.grasp)) return false;
-    best_ = exact.grasp;
-    merit_ = merit;
-    best_sample_ = sample;
+    if (!(merit > BestMerit()) || !CanBeReached(exact.grasp)) return false;
+    best_ = {exact.grasp, merit, sample};
     ++num_gains_;
     return true;
   }
@@ -403,10 +427,9 @@ class Replanner {
   bool keeps_{true};  // Whether Evaluate() keeps the best.
   PerturbedCopies copies_;
   Random random_;
-  std::optional<Grasp> best_;
-  Merit merit_;         // Of the best …
-  Sample best_sample_;  // … and how it came about.
+  std::optional<Kept> best_;  // Of this search.
   int num_gains_{0};
+  int cycle_{0};  // Annealings so far.
   TransferOutcome furthest_{TransferOutcome::kPalmCollision};
 };
 

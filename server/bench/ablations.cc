@@ -28,6 +28,7 @@ std::vector<BenchVariant> MakeAblations() {
           [](Parameters& p) { p.pregrasp.timed = false; });
   without("climbing to a surer grip",
           [](Parameters& p) { p.replan.climb_samples = 0; });
+  without("further searches", [](Parameters& p) { p.replan.searches = 1; });
   without("aiming beyond open-close",
           [](Parameters& p) { p.replan.behind_cost = 0.0; });
   without("the motors' balance in Eq. (6)",

@@ -1,6 +1,7 @@
 #include "server/bench/html_report.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr char kOurs[] = "#1f77b4";
 constexpr char kTheirs[] = "#d62728";
 constexpr char kOther[] = "#888";
+constexpr char kThird[] = "#2ca02c";
 
 constexpr char kHead[] = R"(<!DOCTYPE html>
 <html lang="en">
@@ -311,7 +313,7 @@ std::string MakeLearningFigures(const Json& variant) {
 // Distinct grasps over time, by where the swarm started.
 std::string MakeSeedingFigures(const Json& variant) {
   if (!variant.contains("seeding")) return "";
-  constexpr const char* kColors[] = {kTheirs, kOurs, kOther};
+  constexpr const char* kColors[] = {kTheirs, kOurs, kThird, kOther};
   std::vector<std::pair<std::string, std::vector<PlotSeries>>> plots;
   for (const Json& row : variant["seeding"]) {
     const std::string part = row["category"].get<std::string>() + " " +
@@ -322,7 +324,7 @@ std::string MakeSeedingFigures(const Json& variant) {
     std::vector<PlotSeries>& series = plots.back().second;
     PlotSeries one;
     one.name = row["seeding"].get<std::string>();
-    one.color = kColors[std::min<size_t>(series.size(), 2)];
+    one.color = kColors[series.size() % std::size(kColors)];
     one.line = true;
     for (const Json& point : row["curve"]) {
       AddPoint(point["seconds"], point["grasps"], one);

@@ -313,11 +313,10 @@ class PaperBench {
         {"lift", MakeLiftTest()}};
     double begin = 0.6;
     for (const auto& [key, test] : tests) {
-      verify.test = test;
-      verify.keep = false;
       SubContext testing(context, key, begin, begin + 0.2);
       begin += 0.2;
-      GRASPDB_TRY(verified, service.VerifyGrasps(verify, testing.context()));
+      GRASPDB_TRY(verified, service.VerifyGrasps(verify, testing.context(),
+                                                 {test, false}));
       for (const VerifiedGrasp& one : verified) {
         further[key][one.grasp.id] = one.verdict.CalcScore();
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -23,8 +24,10 @@ struct Seeding {
   double uniform_share;
 };
 constexpr Seeding kSeedings[] = {{"support vectors", 0.0, 0.0},
+                                 {"both", 0.5, 0.0},
                                  {"aimed at the surface", 1.0, 0.0},
                                  {"uniform", 0.0, 1.0}};
+constexpr double kShare = 1.0 / std::size(kSeedings);
 // Never reached, so that the swarm's progress tells how many were found.
 constexpr int kNoTarget = 100'000;
 constexpr int kNoEnd = 1'000'000;
@@ -54,8 +57,8 @@ Result<Json> CompareSeeding(Service& service, const StoredGraspSpace& record,
   Json rows = Json::array();
   double begin = 0.0;
   for (const Seeding& seeding : kSeedings) {
-    SubContext share(context, seeding.name, begin, begin + 1.0 / 3.0);
-    begin += 1.0 / 3.0;
+    SubContext share(context, seeding.name, begin, begin + kShare);
+    begin += kShare;
     Parameters changed = parameters;
     changed.swarm.aimed_share = seeding.aimed_share;
     changed.swarm.uniform_share = seeding.uniform_share;
@@ -75,7 +78,7 @@ Result<Json> CompareSeeding(Service& service, const StoredGraspSpace& record,
     std::optional<GraspSearchResult> found;
     RunInArena(service.options().threads, [&] {
       std::vector<HandPosture> seeds;
-      if (seeding.aimed_share + seeding.uniform_share == 0.0) {
+      if (seeding.aimed_share + seeding.uniform_share < 1.0) {
         auto learned = LearnConfigurationSpace(
             space, parameters.active_learning, DeriveSeed(seed, {0}), timed);
         if (!learned) return;

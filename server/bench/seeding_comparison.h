@@ -12,9 +12,9 @@
 namespace graspdb {
 
 /** Where the swarm's particles start, on one part for the same time each: at
- the classifier's support vectors (whose learning counts), aimed at the surface,
- or anywhere that is free.
- @param seconds  Of a clock, for each of the three.
+ the classifier's support vectors (whose learning counts), half of them there
+ and half aimed at the surface, all aimed, or anywhere that is free.
+ @param seconds  Of a clock, for each of the four.
  @returns [{"category", "part", "seeding", "seconds", "tried", "grasps",
  "curve":
    [{"seconds", "grasps"}]}], not reproducible, since time ends each.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/base/result.h"
@@ -26,7 +27,9 @@ class Backend {
  public:
   virtual ~Backend() = default;
 
+  /** @param deadline  Seconds after which what was found is the answer. */
   virtual Result<std::string> Grasp(const TransferOrder& order,
+                                    std::optional<double> deadline,
                                     Progress& progress) = 0;
   virtual Result<std::string> Query(const GraspSearch& search) = 0;
   /** Stores the mesh as an object; answers it with its parts. */

@@ -15,7 +15,7 @@ void AddGrasp(Subcommands& commands) {
   struct Extra {
     std::string path, parameters, stage;
     std::optional<int> count;
-    std::optional<double> friction;
+    std::optional<double> friction, deadline;
   };
   const auto extra = Share<Extra>();
   AddMeshOptions(command, order->mesh, extra->path);
@@ -31,6 +31,10 @@ void AddGrasp(Subcommands& commands) {
   command->add_option("--sources", order->sources, "source grasps per part")
       ->capture_default_str();
   command->add_option("--friction", extra->friction, "coefficient");
+  command
+      ->add_option("--deadline", extra->deadline,
+                   "seconds after which what was found is the answer")
+      ->check(CLI::Range(0.1, 86400.0));
   command->add_option("--stage", extra->stage, "assembly (default), transfer");
   command->add_option("--seed", order->seed, "")->capture_default_str();
   command->add_option("--parameters", extra->parameters,
@@ -49,7 +53,7 @@ void AddGrasp(Subcommands& commands) {
       GRASPDB_TRY_VOID(ReadMesh(extra->path, order->mesh));
       GRASPDB_TRY(backend, program.OpenBackend());
       Progress progress(program.options().json);
-      GRASPDB_TRY(answer, backend->Grasp(*order, progress));
+      GRASPDB_TRY(answer, backend->Grasp(*order, extra->deadline, progress));
       return program.Print(answer, ReportTransfer);
     };
   });

@@ -29,8 +29,16 @@ class LocalBackend : public Backend {
   explicit LocalBackend(Service& service) : service_(service) {}
 
   Result<std::string> Grasp(const TransferOrder& order,
+                            std::optional<double> deadline,
                             Progress& progress) override {
     ExecutionContext context(Follow(progress));
+    if (deadline) {
+      using Seconds = std::chrono::duration<double>;
+      using Clock = ExecutionContext::Clock;
+      context.set_deadline(
+          Clock::now() +
+          std::chrono::duration_cast<Clock::duration>(Seconds(*deadline)));
+    }
     GRASPDB_TRY(answer, service_.TransferGrasps(order, context));
     return ToJson(answer);
   }

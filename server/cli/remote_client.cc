@@ -59,6 +59,7 @@ class RemoteBackend : public Backend {
   }
 
   Result<std::string> Grasp(const TransferOrder& order,
+                            std::optional<double> deadline,
                             Progress& progress) override {
     QueryText query;
     query.Add("category", order.category)
@@ -71,11 +72,18 @@ class RemoteBackend : public Backend {
         .Add("sources", std::to_string(order.sources))
         .Add("stage", ToString(order.stage))
         .Add("seed", std::to_string(order.seed))
-        .Add("parameters", DescribeChanges(order.parameters));
+        .Add("parameters", DescribeChanges(order.parameters))
+        .Add("deadline", deadline ? fmt::format("{}", *deadline) : "");
     if (order.object_id.empty()) {
       query.Add("format", FormatOf(order.mesh)).Add("units", order.mesh.units);
     }
     const std::string target = "/v1/grasps" + query.text();
+    if (deadline) {  // What is cut is not found again: wait for it.
+      GRASPDB_TRY(reply, Post(target, order.mesh.bytes, "wait=600"));
+      if (reply.status != 202) return reply.body;
+      return Error{ErrorCode::kDeadlineExceeded, "The server is still at it.",
+                   "GET /v1/jobs"};
+    }
     GRASPDB_TRY(reply, Post(target, order.mesh.bytes, "respond-async"));
     if (reply.status != 202) return reply.body;
     GRASPDB_TRY_VOID(Follow(reply, progress));

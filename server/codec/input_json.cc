@@ -302,6 +302,20 @@ ImportOrder ReadImportOrder(JsonFields& fields) {
   return order;
 }
 
+SegmentOrder ReadSegmentOrder(JsonFields& fields) {
+  SegmentOrder order;
+  fields.Read("category", order.category);
+  fields.ReadSeed("seed", order.seed);
+  order.face_labels = ReadFaceLabels(fields);
+  if (const Json* settings = fields.Find("settings")) {
+    order.settings = DumpJson(*settings);
+    const auto read =
+        SegmentationFromJson(order.settings, SegmentationParameters());
+    if (!read) fields.Fail(read.error());
+  }
+  return order;
+}
+
 LearnOrder ReadLearnOrder(JsonFields& fields) {
   LearnOrder order;
   fields.Read("parts", order.part_labels);
@@ -386,16 +400,34 @@ Result<std::string> PartLabelFromJson(const std::string& text) {
 Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
   GRASPDB_TRY(json, ParseJson(text, kFileLimits));
   JsonFields fields(json, "");
-  SegmentOrder order;
-  fields.Read("category", order.category);
-  fields.ReadSeed("seed", order.seed);
-  order.face_labels = ReadFaceLabels(fields);
-  if (const Json* settings = fields.Find("settings")) {
-    order.settings = DumpJson(*settings);
-    const auto read =
-        SegmentationFromJson(order.settings, SegmentationParameters());
-    if (!read) fields.Fail(read.error());
+  SegmentOrder order = ReadSegmentOrder(fields);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text));
+  JsonFields fields(json, "");
+  VerifyOrder order;
+  GraspQuery& query = order.query;
+  fields.Read("category", query.category);
+  fields.Read("parts", query.part_labels);
+  fields.Read("hand", query.hand);
+  fields.Read("object", query.object_id);
+  fields.Read("grasp_space", query.grasp_space_id);
+  fields.Read("transfer", query.transfer_id);
+  if (fields.Has("stage")) {
+    std::string stage;
+    fields.RequireText("stage", stage);
+    const auto parsed = ParseGraspStage(stage);
+    if (parsed) {
+      query.stage = *parsed;
+    } else {
+      fields.Fail(parsed.error());
+    }
   }
+  fields.ReadInteger("limit", order.limit, 0, 1'000'000);
+  fields.Read("again", order.again);
   GRASPDB_TRY_VOID(fields.Finish());
   return order;
 }
@@ -409,6 +441,32 @@ Result<LearnOrder> LearnOrderFromJson(const std::string& text) {
 }
 
 std::string ToJson(const ImportOrder& order) { return DumpJson(Encode(order)); }
+
+std::string ToJson(const SegmentOrder& order) {
+  Json json;
+  json["object"] = order.object_id;
+  json["category"] = order.category;
+  if (!order.settings.empty()) json["settings"] = Json::parse(order.settings);
+  json["face_labels"] = order.face_labels;
+  json["seed"] = order.seed;
+  json["cascade"] = order.cascade;
+  return DumpJson(json);
+}
+
+std::string ToJson(const VerifyOrder& order) {
+  const GraspQuery& query = order.query;
+  Json json;
+  json["category"] = query.category;
+  json["parts"] = query.part_labels;
+  json["hand"] = query.hand;
+  json["object"] = query.object_id;
+  json["grasp_space"] = query.grasp_space_id;
+  json["transfer"] = query.transfer_id;
+  if (query.stage) json["stage"] = ToString(*query.stage);
+  json["limit"] = order.limit;
+  json["again"] = order.again;
+  return DumpJson(json);
+}
 
 std::string ToJson(const LearnOrder& order) {
   Json json;
@@ -441,6 +499,16 @@ Result<ImportOrder> StoredImportOrderFromJson(const std::string& text) {
   GRASPDB_TRY(json, ParseJson(text, kFileLimits));
   JsonFields fields(json, "");
   ImportOrder order = ReadImportOrder(fields);
+  GRASPDB_TRY_VOID(fields.Finish());
+  return order;
+}
+
+Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text) {
+  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  JsonFields fields(json, "");
+  SegmentOrder order = ReadSegmentOrder(fields);
+  fields.RequireText("object", order.object_id);
+  fields.Read("cascade", order.cascade);
   GRASPDB_TRY_VOID(fields.Finish());
   return order;
 }

@@ -71,11 +71,18 @@ Result<SegmentOrder> SegmentOrderFromJson(const std::string& text);
  "parameters": {...}, "seed"}, all optional; object_id is the caller's. */
 Result<LearnOrder> LearnOrderFromJson(const std::string& text);
 
+/** POST /v1/verifications: {"category", "parts": [...], "hand", "object",
+ "grasp_space", "transfer", "stage", "limit", "again"}, all optional. */
+Result<VerifyOrder> VerifyOrderFromJson(const std::string& text);
+
 // Orders in the jobs table, whole but for the bytes of a mesh.
+std::string ToJson(const SegmentOrder& order);
+std::string ToJson(const VerifyOrder& order);  ///< As POST /v1/verifications.
 std::string ToJson(const ImportOrder& order);
 std::string ToJson(const LearnOrder& order);
 std::string ToJson(const TransferOrder& order);
 Result<ImportOrder> StoredImportOrderFromJson(const std::string& text);
+Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text);
 Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text);
 Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text);
 

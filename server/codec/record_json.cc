@@ -1,9 +1,11 @@
 #include "server/codec/record_json.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include "server/codec/encode.h"
 #include "server/codec/parameters_json.h"
+#include "server/ids.h"
 
 namespace graspdb {
 
@@ -94,12 +96,30 @@ Json Encode(const StoredPart& part, bool with_faces) {
   return json;
 }
 
-// How many source grasps were tried, transferred, assembled; how many the
-// open-close baseline holds at the stage asked for.
+// Where the grasps are that a job of this kind has judged.
+std::string MakeGraspsHref(const Json& order) {
+  std::string filters;
+  for (const char* name :
+       {"category", "hand", "object", "grasp_space", "transfer", "stage"}) {
+    const std::string value = order.value(name, "");
+    // What exists has a plain name.
+    if (!value.empty()) filters += fmt::format("&{}={}", name, value);
+  }
+  const Json& parts = order.at("parts");
+  for (size_t i = 0; i < parts.size(); ++i) {
+    filters += (i == 0 ? "&part=" : ",") + parts[i].get<std::string>();
+  }
+  return "/v1/grasps?sort=merit" + filters;
+}
+
 Json EncodeJobResult(const StoredJob& job) {
   if (job.state != JobState::kSucceeded) return nullptr;
-  const bool transfer = job.kind == JobKind::kTransfer;
   Json json;
+  if (job.kind == JobKind::kVerify) {
+    json["href"] = MakeGraspsHref(Json::parse(job.request));
+    return json;
+  }
+  const bool transfer = job.kind == JobKind::kTransfer;
   json[transfer ? "transfer" : "object"] = job.result_id;
   json["href"] = (transfer ? "/v1/transfers/" : "/v1/objects/") + job.result_id;
   return json;
@@ -262,6 +282,8 @@ std::string ToJson(const StoredJob& job) {
   json["grasps_found"] = OrNull(job.grasps_found);
   json["result"] = EncodeJobResult(job);
   json["error"] = Encode(job.error);
+  json["deadline_at"] =
+      job.deadline ? Json(FormatTime(*job.deadline)) : Json(nullptr);
   json["created_at"] = job.created_at;
   json["started_at"] = OrNull(job.started_at);
   json["finished_at"] = OrNull(job.finished_at);

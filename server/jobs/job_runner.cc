@@ -6,6 +6,7 @@
 
 #include "server/codec/input_json.h"
 #include "server/codec/record_json.h"
+#include "server/ids.h"
 #include "server/jobs/low_priority.h"
 #include "server/jobs/service.h"
 #include "server/jobs/sub_context.h"
@@ -17,6 +18,13 @@ namespace {
 constexpr double kLeastProgressForEta = 0.02;
 // Of the progress of importing and learning an example.
 constexpr double kImportShare = 0.05;
+
+Error MakeTimedOut() {
+  return {ErrorCode::kDeadlineExceeded,
+          "The deadline passed before the work was done.",
+          "allow more time with deadline; GET /v1/jobs tells what else waits",
+          "deadline"};
+}
 
 }  // namespace
 
@@ -160,6 +168,11 @@ void JobRunner::Run(StoredJob job) {
         }
         Notify();
       });
+  if (job.deadline) {
+    context->set_deadline(
+        Clock::now() +
+        std::chrono::milliseconds(*job.deadline - CalcUnixMilliseconds()));
+  }
   {
     const std::lock_guard lock(mutex_);
     live_[id] = {"", 0.0, Clock::now(), context, false};
@@ -187,7 +200,8 @@ void JobRunner::Run(StoredJob job) {
     job.state = JobState::kCancelled;
   } else {
     job.state = JobState::kFailed;
-    job.error = result.error();
+    job.error =
+        cancelled && context->TimedOut() ? MakeTimedOut() : result.error();
   }
   // A job that the end of the server interrupted stays as it is, to be queued.
   if (!(cancelled && interrupted && !cancelled_by_user)) {
@@ -218,6 +232,17 @@ Result<std::string> JobRunner::Execute(const StoredJob& job,
       }
       case JobKind::kTransfer:
         return ExecuteTransfer(job, std::move(payload), context);
+      case JobKind::kSegment: {
+        GRASPDB_TRY(order, StoredSegmentOrderFromJson(payload));
+        GRASPDB_TRY(done, service_.Resegment(order, context));
+        return done.object.id;
+      }
+      case JobKind::kVerify: {
+        GRASPDB_TRY(order, VerifyOrderFromJson(job.request));
+        const auto verified = service_.VerifyGrasps(order, context);
+        if (!verified) return verified.error();
+        return std::string();
+      }
     }
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),

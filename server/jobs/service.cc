@@ -10,6 +10,7 @@
 #include "engine/admission/mesh_format.h"
 #include "engine/hand/hand_maker.h"
 #include "server/codec/input_json.h"
+#include "server/codec/json.h"
 #include "server/decode/decode_client.h"
 #include "server/files.h"
 #include "server/ids.h"
@@ -187,24 +188,33 @@ Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
   return hands_.emplace(name, model).first->second;
 }
 
+Result<void> Service::CheckQuery(const GraspQuery& query) const {
+  const auto check = [](const auto& found) -> Result<void> {
+    if (!found) return found.error();
+    return {};
+  };
+  if (!query.category.empty()) {
+    GRASPDB_TRY_VOID(check(store_->FindCategory(query.category)));
+  }
+  if (!query.hand.empty()) {
+    GRASPDB_TRY_VOID(check(FindHandModel(query.hand)));
+  }
+  if (!query.object_id.empty()) {
+    GRASPDB_TRY_VOID(check(store_->FindObject(query.object_id)));
+  }
+  if (!query.grasp_space_id.empty()) {
+    GRASPDB_TRY_VOID(check(store_->FindGraspSpace(query.grasp_space_id)));
+  }
+  if (!query.transfer_id.empty()) {
+    GRASPDB_TRY_VOID(check(store_->FindTransfer(query.transfer_id)));
+  }
+  return {};
+}
+
 Result<Page<StoredGrasp>> Service::QueryGrasps(
     const GraspSearch& search) const {
   GraspQuery query = search.query;
-  if (!query.category.empty()) {
-    if (const auto known = store_->FindCategory(query.category); !known) {
-      return known.error();
-    }
-  }
-  if (!query.hand.empty()) {
-    if (const auto known = FindHandModel(query.hand); !known) {
-      return known.error();
-    }
-  }
-  if (!query.object_id.empty()) {
-    if (const auto known = store_->FindObject(query.object_id); !known) {
-      return known.error();
-    }
-  }
+  GRASPDB_TRY_VOID(CheckQuery(query));
   if (search.task.empty()) return store_->QueryGrasps(query);
   if (!query.part_labels.empty()) {
     return Error{ErrorCode::kInvalidArgument, "Give parts or a task, not both.",
@@ -238,35 +248,50 @@ Result<std::shared_ptr<void>> Service::HoldKey(const std::string& key) {
 
 // ---- Jobs -------------------------------------------------------------------
 
-Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
-                                        const std::string& idempotency_key) {
-  GRASPDB_TRY(checked, CheckImport(order));
-  const bool slow = checked.role == ObjectRole::kExample && checked.learn;
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kImport, slow, ToJson(checked),
-                                     checked.bytes, idempotency_key,
+Result<StoredJob> Service::Submit(JobKind kind, bool slow,
+                                  const std::string& request,
+                                  const std::string& payload,
+                                  const JobTerms& terms) {
+  GRASPDB_TRY(job, store_->InsertJob(kind, slow, request, payload, terms,
                                      options_.max_queued_jobs));
   runner_->Wake();
   return job;
+}
+
+Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
+                                        const JobTerms& terms) {
+  GRASPDB_TRY(checked, CheckImport(order));
+  const bool slow = checked.role == ObjectRole::kExample && checked.learn;
+  return Submit(JobKind::kImport, slow, ToJson(checked), checked.bytes, terms);
 }
 
 Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
-                                       const std::string& idempotency_key) {
+                                       const JobTerms& terms) {
   GRASPDB_TRY_VOID(CheckLearn(order));
-  GRASPDB_TRY(job,
-              store_->InsertJob(JobKind::kLearn, true, ToJson(order), "",
-                                idempotency_key, options_.max_queued_jobs));
-  runner_->Wake();
-  return job;
+  return Submit(JobKind::kLearn, true, ToJson(order), "", terms);
 }
 
 Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
-                                          const std::string& idempotency_key) {
+                                          const JobTerms& terms) {
   GRASPDB_TRY(checked, CheckTransfer(order));
-  GRASPDB_TRY(job, store_->InsertJob(JobKind::kTransfer, false, ToJson(checked),
-                                     checked.mesh.bytes, idempotency_key,
-                                     options_.max_queued_jobs));
-  runner_->Wake();
-  return job;
+  return Submit(JobKind::kTransfer, false, ToJson(checked), checked.mesh.bytes,
+                terms);
+}
+
+Result<StoredJob> Service::SubmitSegment(const SegmentOrder& order,
+                                         const JobTerms& terms) {
+  if (const auto object = store_->FindObject(order.object_id); !object) {
+    return object.error();
+  }
+  // Face labels may be many: they go when the job has ended.
+  return Submit(JobKind::kSegment, false,
+                DumpJson({{"object", order.object_id}}), ToJson(order), terms);
+}
+
+Result<StoredJob> Service::SubmitVerify(const VerifyOrder& order,
+                                        const JobTerms& terms) {
+  GRASPDB_TRY_VOID(CheckQuery(order.query));
+  return Submit(JobKind::kVerify, true, ToJson(order), "", terms);
 }
 
 Result<StoredJob> Service::FindJob(const std::string& id) const {

@@ -65,14 +65,11 @@ struct ImportResult {
   bool created{false};  ///< False when the object was stored before.
 };
 
-struct VerifyOrder {
-  GraspQuery query;   ///< Which; its page is of no account.
-  int64_t limit{0};   ///< Most grasps, best first; 0: all.
-  bool again{false};  ///< Those as well that have a verdict.
+/** How Service::VerifyGrasps() judges. */
+struct VerifyOptions {
   PushTest test;
   /** Whether the verdicts are stored. If not, all that are asked for are
-   * judged.
-   */
+   judged. */
   bool keep{true};
 };
 
@@ -112,7 +109,6 @@ class Service {
    @retval kConflict when the name is taken. */
   Result<StoredCategory> AddCategory(const StoredCategory& category);
   Result<StoredCategory> UpdateCategory(const StoredCategory& category);
-  /** Reads the hand once, so that only a usable one is stored. */
   /** Decodes a hand's meshes and its URDF, checks that they make a hand, and
    stores it; the same files a second time change nothing.
    @retval kConflict when another hand has its name.
@@ -145,7 +141,8 @@ class Service {
   Result<std::vector<StoredGraspSpace>> LearnObject(const LearnOrder& order,
                                                     ExecutionContext& context);
   /** Maps, replans, assembles, stores; a transfer with the same inputs is
-   answered from the store.
+   answered from the store. One that the context's deadline cuts is stored with
+   what it found, under ids of its own: it answers no other request.
    @param on_grasp  Hears of each grasp of the stage asked for as it is found,
      before it is stored: from the computing threads, one at a time. */
   Result<TransferAnswer> TransferGrasps(const TransferOrder& order,
@@ -159,18 +156,23 @@ class Service {
 
   /** Lets a simulator judge stored grasps, best first, and keeps its verdicts,
    object by object. */
-  Result<std::vector<VerifiedGrasp>> VerifyGrasps(const VerifyOrder& order,
-                                                  ExecutionContext& context);
+  Result<std::vector<VerifiedGrasp>> VerifyGrasps(
+      const VerifyOrder& order, ExecutionContext& context,
+      const VerifyOptions& options = {});
 
   // ---- Jobs -----------------------------------------------------------------
   // Submit… checks what can be checked at once (names, ranges, what is
   // learned), writes the job to the database and returns it queued.
   Result<StoredJob> SubmitImport(const ImportOrder& order,
-                                 const std::string& idempotency_key = "");
+                                 const JobTerms& terms = {});
   Result<StoredJob> SubmitLearn(const LearnOrder& order,
-                                const std::string& idempotency_key = "");
+                                const JobTerms& terms = {});
   Result<StoredJob> SubmitTransfer(const TransferOrder& order,
-                                   const std::string& idempotency_key = "");
+                                   const JobTerms& terms = {});
+  Result<StoredJob> SubmitSegment(const SegmentOrder& order,
+                                  const JobTerms& terms = {});
+  Result<StoredJob> SubmitVerify(const VerifyOrder& order,
+                                 const JobTerms& terms = {});
   /** The job with its live progress. */
   Result<StoredJob> FindJob(const std::string& id) const;
   Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
@@ -213,6 +215,9 @@ class Service {
   Result<ImportOrder> CheckImport(const ImportOrder& order) const;
   Result<TransferOrder> CheckTransfer(const TransferOrder& order) const;
   Result<void> CheckLearn(const LearnOrder& order) const;
+  Result<void> CheckQuery(const GraspQuery& query) const;
+  Result<StoredJob> Submit(JobKind kind, bool slow, const std::string& request,
+                           const std::string& payload, const JobTerms& terms);
   Result<ImportResult> ImportNewObject(const ImportOrder& order,
                                        ExecutionContext& context);
   Result<StoredObject> FindTransferObject(const TransferOrder& order,

@@ -148,7 +148,12 @@ class RowMaker {
            StoredTransfer& transfer)
       : plan_(plan), request_(request), transfer_(transfer) {}
 
+  // One that was cut before it found anything says nothing.
   void Add(const TransferRecord& record, int index) {
+    const bool found = transfer_.stage == GraspStage::kAssembly
+                           ? record.assembled.has_value()
+                           : record.transferred.has_value();
+    if (record.cut && !found) return;
     const auto part = static_cast<size_t>(record.part);
     const StoredGraspSpace& space = *plan_.spaces[part];
     StoredAttempt attempt;
@@ -357,11 +362,16 @@ Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
   GRASPDB_TRY(result, Transfer(request, transferring.context()));
   row.seconds.emplace_back("transfer", CalcSecondsSince(transfer_start));
 
-  if (!result.complete && context.Cancelled()) {
+  if (!result.complete && !context.TimedOut()) {
     return Error{ErrorCode::kCancelled, "The transfer was cancelled.",
                  "send the request again"};
   }
-  row.complete = result.complete;
+  if (!result.complete) {
+    row.complete = false;
+    row.id = MakeContentId("cut transfer " + MakeUuid());
+    row.warnings.push_back(
+        "the deadline ended the search: these are the grasps found until then");
+  }
   rows.AddMaps(result.alignments);
   for (size_t i = 0; i < result.records.size(); ++i) {
     rows.Add(result.records[i], static_cast<int>(i));

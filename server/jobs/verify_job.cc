@@ -14,15 +14,15 @@ namespace {
 using Group = std::vector<VerifiedGrasp>;
 
 Result<std::vector<Group>> CollectGroups(const Store& store,
-                                         const VerifyOrder& order) {
+                                         const VerifyOrder& order, bool keep) {
   std::map<std::pair<std::string, std::string>, Group> groups;
-  int64_t count = 0;
+  int count = 0;
   GraspQuery query = order.query;
   query.page = {1000, ""};
   do {
     GRASPDB_TRY(page, store.QueryGrasps(query));
     for (StoredGrasp& grasp : page.items) {
-      if (grasp.physical && order.keep && !order.again) continue;
+      if (grasp.physical && keep && !order.again) continue;
       if (order.limit > 0 && count == order.limit) break;
       ++count;
       Group& group = groups[{grasp.object_id, grasp.hand}];
@@ -39,8 +39,9 @@ Result<std::vector<Group>> CollectGroups(const Store& store,
 }  // namespace
 
 Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
-    const VerifyOrder& order, ExecutionContext& context) {
-  GRASPDB_TRY(groups, CollectGroups(*store_, order));
+    const VerifyOrder& order, ExecutionContext& context,
+    const VerifyOptions& options) {
+  GRASPDB_TRY(groups, CollectGroups(*store_, order, options.keep));
   size_t total = 0;
   for (const Group& group : groups) total += group.size();
   std::atomic<size_t> done{0};
@@ -56,7 +57,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
           std::min(CountThreads(), static_cast<int>(group.size()));
       ParallelFor(workers, [&](int worker) {
         // The working mesh; the pieces stand out by up to 1 mm anyhow.
-        GraspSimulator simulator(hand, meshes.work, order.test);
+        GraspSimulator simulator(hand, meshes.work, options.test);
         for (size_t i = static_cast<size_t>(worker); i < group.size();
              i += static_cast<size_t>(workers)) {
           if (context.Cancelled()) return;
@@ -76,7 +77,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
       one.grasp.physical = one.verdict.CalcScore();
       scores.emplace_back(one.grasp.id, *one.grasp.physical);
     }
-    if (order.keep) GRASPDB_TRY_VOID(store_->SetPhysical(scores));
+    if (options.keep) GRASPDB_TRY_VOID(store_->SetPhysical(scores));
     std::move(group.begin(), group.end(), std::back_inserter(verified));
   }
   return verified;

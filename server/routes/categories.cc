@@ -66,6 +66,7 @@ Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
   const auto name = query.Text("name");
   const uint64_t seed = ReadSeed(query);
   const auto learn = query.Boolean("learn");
+  const auto deadline = ReadDeadline(query);
   GRASPDB_TRY_VOID(query.Finish());
   if (!upload) return upload.error();
   if (!upload->has_value()) return MakeMissingMesh();
@@ -80,7 +81,7 @@ Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
     order.face_labels = face_labels;
   }
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
-  GRASPDB_TRY(job, service.SubmitImport(order, idempotency.key()));
+  GRASPDB_TRY(job, service.SubmitImport(order, {idempotency.key(), deadline}));
   return AnswerJob(service, request, std::chrono::seconds(0), job, idempotency,
                    [&](const StoredJob& done) -> Result<HttpResponse> {
                      return DescribeObject(service, 200, done.result_id);

@@ -110,16 +110,10 @@ Result<GraspSearch> ReadSearch(QueryReader& query) {
   return search;
 }
 
-/** Whether what the search names exists. Of parts and tasks only a category
- knows. */
+/** Whether the parts and tasks that the search names exist: of them only
+ categories know. */
 Result<void> CheckNames(const Store& store, const GraspSearch& search) {
   const GraspQuery& wanted = search.query;
-  if (!wanted.grasp_space_id.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindGraspSpace(wanted.grasp_space_id)));
-  }
-  if (!wanted.transfer_id.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindTransfer(wanted.transfer_id)));
-  }
   GRASPDB_TRY_VOID(CheckPartLabels(store, wanted.category, wanted.part_labels));
   if (wanted.category.empty()) return {};
   GRASPDB_TRY(category, store.FindCategory(wanted.category));
@@ -273,11 +267,13 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
                                 const HttpRequest& request) {
   QueryReader query(request.query);
   const GraspFormat format = ReadFormat(query);
+  const auto deadline = ReadDeadline(query);
   GRASPDB_TRY(order, ReadTransferOrder(request, query));
   const bool has_mesh = !request.body.empty() || !request.files.empty();
   GRASPDB_TRY_VOID(CheckTransferOrder(order, has_mesh));
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
-  GRASPDB_TRY(job, service.SubmitTransfer(order, idempotency.key()));
+  GRASPDB_TRY(job,
+              service.SubmitTransfer(order, {idempotency.key(), deadline}));
   return AnswerJob(
       service, request, options.default_wait, job, idempotency,
       [&](const StoredJob& done) -> Result<HttpResponse> {

@@ -63,8 +63,7 @@ Result<std::string> WriteStore(const Store& store) {
   GRASPDB_TRY(bytes, store.CalcSize());
   std::string text = WriteMetricHead(
       "graspdb_jobs", "gauge", "Jobs in the database, by kind and state.");
-  for (const JobKind kind :
-       {JobKind::kImport, JobKind::kLearn, JobKind::kTransfer}) {
+  for (const JobKind kind : kJobKinds) {
     for (const JobState state :
          {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
           JobState::kFailed, JobState::kCancelled}) {

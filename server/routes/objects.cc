@@ -175,30 +175,33 @@ Result<HttpResponse> ListParts(const Service& service,
                           [](const StoredPart& part) { return ToJson(part); });
 }
 
-Result<HttpResponse> PostSegmentation(Service& service, WorkSlots& slots,
+Result<HttpResponse> PostSegmentation(Service& service,
+                                      const RouteOptions& options,
                                       const HttpRequest& request) {
   QueryReader query(request.query);
   const bool cascade = query.Boolean("cascade").value_or(false);
+  const auto deadline = ReadDeadline(query);
   GRASPDB_TRY_VOID(query.Finish());
   GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
   order.cascade = cascade;
-  return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
-    RequestContext context(request);
-    const auto slot = slots.Take(request.stop);
-    if (!slot) return slot.error();
-    GRASPDB_TRY(done, service.Resegment(order, context.context()));
-    return MakeJsonResponse(200, ToJson(done.object, done.parts));
-  });
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
+  GRASPDB_TRY(job, service.SubmitSegment(order, {idempotency.key(), deadline}));
+  return AnswerJob(service, request, options.default_wait, job, idempotency,
+                   [&](const StoredJob& done) {
+                     return DescribeObject(service, 200, done.result_id);
+                   });
 }
 
 Result<HttpResponse> PostGraspSpaces(Service& service,
                                      const HttpRequest& request) {
-  GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
+  QueryReader query(request.query);
+  const auto deadline = ReadDeadline(query);
+  GRASPDB_TRY_VOID(query.Finish());
   GRASPDB_TRY(order, LearnOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
-  GRASPDB_TRY(job, service.SubmitLearn(order, idempotency.key()));
+  GRASPDB_TRY(job, service.SubmitLearn(order, {idempotency.key(), deadline}));
   return AnswerJob(
       service, request, std::chrono::seconds(0), job, idempotency,
       [&](const StoredJob& done) -> Result<HttpResponse> {
@@ -247,11 +250,10 @@ void AddObjectRoutes(Router& router, Service& service,
               [&service](const HttpRequest& request) {
                 return ListParts(service, request);
               }});
-  router.Add(
-      {"POST", one + "/segmentation", BodyKind::kJson,
-       [&service, slots = options.work_slots](const HttpRequest& request) {
-         return PostSegmentation(service, *slots, request);
-       }});
+  router.Add({"POST", one + "/segmentation", BodyKind::kJson,
+              [&service, options](const HttpRequest& request) {
+                return PostSegmentation(service, options, request);
+              }});
   router.Add({"POST", one + "/grasp-spaces", BodyKind::kJson,
               [&service](const HttpRequest& request) {
                 return PostGraspSpaces(service, request);

@@ -15,8 +15,9 @@
 
 namespace graspdb {
 
-/** How long POST /v1/grasps waits for its job unless the client says. */
 struct RouteOptions {
+  /** How long a request waits for its job unless the client says, where most
+   jobs are short. */
   std::chrono::seconds default_wait{60};
   /** Open at once; each holds one of the server's threads. */
   int max_event_streams{32};
@@ -43,6 +44,8 @@ void AddObjectRoutes(Router& router, Service& service,
 void AddPartRoutes(Router& router, Service& service);
 void AddSystemRoutes(Router& router, Service& service);
 void AddTransferRoutes(Router& router, Service& service);
+void AddVerificationRoutes(Router& router, Service& service,
+                           const RouteOptions& options);
 void AddViewerRoutes(Router& router);
 
 /** All of them. */

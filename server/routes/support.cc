@@ -95,6 +95,11 @@ PageRequest ReadPage(QueryReader& query) {
   return page;
 }
 
+std::optional<double> ReadDeadline(QueryReader& query) {
+  constexpr double kDay = 86400.0;
+  return query.Number("deadline", 0.1, kDay);
+}
+
 uint64_t ReadSeed(QueryReader& query) {
   return static_cast<uint64_t>(query.Integer("seed", 0).value_or(1));
 }

@@ -47,6 +47,9 @@ PageRequest ReadPage(QueryReader& query);
 /** The parameter seed, 1 when absent. */
 uint64_t ReadSeed(QueryReader& query);
 
+/** The parameter deadline, s, of what becomes a job. */
+std::optional<double> ReadDeadline(QueryReader& query);
+
 /** A comma-separated list without empty items; empty when absent. */
 std::vector<std::string> ReadList(QueryReader& query, const std::string& name);
 

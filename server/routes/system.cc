@@ -62,6 +62,7 @@ Router MakeRouter(Service& service, const RouteOptions& options) {
   AddGraspSpaceRoutes(router, service);
   AddGraspRoutes(router, service, options);
   AddTransferRoutes(router, service);
+  AddVerificationRoutes(router, service, options);
   AddHandRoutes(router, service, options);
   AddJobRoutes(router, service, options);
   AddBackupRoutes(router, service);

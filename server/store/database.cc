@@ -116,6 +116,14 @@ void Statement::BindNext(const std::optional<int>& value) {
   }
 }
 
+void Statement::BindNext(const std::optional<int64_t>& value) {
+  if (value) {
+    BindNext(*value);
+  } else {
+    ++next_parameter_;  // Parameters start as NULL.
+  }
+}
+
 Statement& Statement::BindTextOrNull(const std::string& text) {
   if (text.empty()) {
     ++next_parameter_;

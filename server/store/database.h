@@ -94,6 +94,7 @@ class Statement {
   void BindNext(const char* value) { BindNext(std::string(value)); }
   void BindNext(const std::optional<double>& value);
   void BindNext(const std::optional<int>& value);
+  void BindNext(const std::optional<int64_t>& value);
 
   Database* database_;
   std::string sql_;

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "server/ids.h"
 #include "server/store/store.h"
 #include "server/store/store_impl.h"
@@ -16,7 +18,7 @@ constexpr int kMostAttempts = 3;
 constexpr char kJobColumns[] =
     "SELECT id, kind, state, progress, stage, request, result_id, error_code,"
     " error_message, error_hint, error_field, created_at, started_at,"
-    " finished_at FROM jobs ";
+    " finished_at, deadline FROM jobs ";
 
 StoredJob MakeJob(const Statement& row) {
   StoredJob job;
@@ -34,6 +36,7 @@ StoredJob MakeJob(const Statement& row) {
   job.created_at = row.Text(11);
   job.started_at = row.Text(12);
   job.finished_at = row.Text(13);
+  if (!row.IsNull(14)) job.deadline = row.Int(14);
   return job;
 }
 
@@ -75,10 +78,9 @@ int64_t CountQueued(Database& database, bool slow) {
 Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
                                    const std::string& request,
                                    const std::string& payload,
-                                   const std::string& idempotency_key,
-                                   int64_t max_queued) {
+                                   const JobTerms& terms, int64_t max_queued) {
   return impl_->Write([&](Database& database) {
-    if (auto known = FindJobByKey(database, idempotency_key)) {
+    if (auto known = FindJobByKey(database, terms.idempotency_key)) {
       if (known->kind != kind || known->request != request) {
         Throw(ErrorCode::kKeyReused,
               "The Idempotency-Key was used for another request.",
@@ -93,14 +95,17 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
             "them");
     }
     const std::string id = MakeUuid();
+    const int64_t now = CalcUnixMilliseconds();
+    std::optional<int64_t> deadline;
+    if (terms.deadline) deadline = now + std::llround(1e3 * *terms.deadline);
     database
         .Prepare(
             "INSERT INTO jobs (id, kind, state, slow, request, idempotency_key,"
-            " progress, stage, created_at, payload)"
-            " VALUES (?, ?, 'queued', ?, ?, ?, 0, '', ?, ?)")
+            " progress, stage, created_at, deadline, payload)"
+            " VALUES (?, ?, 'queued', ?, ?, ?, 0, '', ?, ?, ?)")
         .Bind(id, ToString(kind), slow, request)
-        .BindTextOrNull(idempotency_key)
-        .Bind(FormatNow())
+        .BindTextOrNull(terms.idempotency_key)
+        .Bind(FormatTime(now), deadline)
         .BindBlob(payload)
         .Run();
     return ReadJob(database, id);

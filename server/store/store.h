@@ -10,33 +10,10 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "server/orders.h"
 #include "server/records.h"
 
 namespace graspdb {
-
-/** Which stored grasps are wanted. Empty fields do not filter. */
-struct GraspQuery {
-  enum class Sort {
-    kEpsilon,  ///< Highest eps first.
-    kHybrid,   ///< Lowest measure of Eq. (1) first.
-    kRobust,   ///< Highest share first, unknown last.
-    kNewest,   ///< Latest stored first.
-    kMerit,    ///< What holds in a simulator first, then the surest grip.
-  };
-  std::string category;
-  std::vector<std::string> part_labels;  ///< Any of these.
-  std::vector<std::string> keep_free;    ///< Parts that the hand keeps …
-  double min_clearance{0.0};             ///< … so far off, m.
-  std::string hand;
-  std::string object_id;
-  std::string grasp_space_id;
-  std::string transfer_id;
-  std::optional<GraspStage> stage;
-  std::optional<double> min_epsilon;
-  bool held{false};  ///< Only what a simulator has found to hold every push.
-  Sort sort{Sort::kEpsilon};
-  PageRequest page;
-};
 
 struct ObjectFilter {
   std::string category;
@@ -186,15 +163,13 @@ class Store {
 
   // ---- Jobs -----------------------------------------------------------------
   /** @param slow  It takes minutes: kept apart from what someone waits for.
-   @param payload  The bytes of a mesh; kept until the job ends.
-   @param idempotency_key  When not empty: a job with the same key is answered
-     instead of a new one.
+   @param payload  The bytes of a mesh, say; kept until the job ends.
    @param max_queued  Of the slow ones, or of the others.
    @retval kKeyReused if the key's job asked for something else.
    @retval kOverloaded when as many are queued. */
   Result<StoredJob> InsertJob(
       JobKind kind, bool slow, const std::string& request,
-      const std::string& payload, const std::string& idempotency_key,
+      const std::string& payload, const JobTerms& terms,
       int64_t max_queued = std::numeric_limits<int64_t>::max());
   Result<StoredJob> FindJob(const std::string& id) const;
   /** Newest first. */

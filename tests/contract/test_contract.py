@@ -844,6 +844,72 @@ def test_a_full_queue_is_a_503(binary, contract, world, server, tmp_path):
     assert live.stop() == 0, live.log()
 
 
+# So long that no machine ends it.
+ENDLESS = json.dumps({"replan": {"grip_copies": 1000, "climb_samples": 1000000}})
+
+
+def test_a_deadline_cuts_a_transfer_which_says_so(contract, world):
+    query = transfer_query(seed=16, sources=40, deadline=3, parameters=ENDLESS)
+    cut = contract.call("postGrasps", 200, query=query, body=world["novel_bytes"])
+    assert cut["complete"] is False
+    assert any("deadline" in warning for warning in cut["warnings"])
+    stored = contract.call("getTransfer", 200, path={"id": cut["transfer_id"]})
+    assert stored["complete"] is False
+    again = contract.call("postGrasps", 200, query=query, body=world["novel_bytes"])
+    assert again["transfer_id"] != cut["transfer_id"]
+
+
+def test_other_jobs_fail_at_their_deadline(contract, world):
+    problem = contract.call(
+        "postGraspSpaces", 503, path={"id": world["example"]["id"]},
+        query={"deadline": 0.2}, body={"parts": ["handle"], "seed": 9},
+        headers={"Prefer": "wait=60"})
+    assert problem["code"] == "deadline_exceeded"
+    job = contract.call("listJobs", 200, query={"state": "failed"})["items"][0]
+    assert job["error"]["code"] == "deadline_exceeded"
+    assert job["deadline_at"] <= job["finished_at"]
+    for deadline in ("0", "soon", "1e9"):
+        contract.call("postGraspSpaces", 400, path={"id": world["example"]["id"]},
+                      query={"deadline": deadline}, body={})
+
+
+def test_segmenting_again_can_be_left_to_a_job(contract, world):
+    stored = contract.call("postObject", (200, 201), query={"category": "mug"},
+                           body=(ROOT / "data" / "mug" / "bowl.obj").read_bytes())
+    job = contract.call("postSegmentation", 202, path={"id": stored["id"]}, body={},
+                        headers={"Prefer": "respond-async"})
+    done = wait_for(contract, job["id"], "succeeded")
+    assert done["kind"] == "segment"
+    assert done["result"]["object"] == stored["id"]
+    contract.call("postSegmentation", 404, path={"id": UNKNOWN_UUID}, body={},
+                  headers={"Prefer": "respond-async"})
+
+
+def test_a_simulator_judges_stored_grasps(contract, world, answer):
+    wanted = {"transfer": answer["transfer_id"], "stage": "assembly", "limit": 1}
+    judged = contract.call("postVerification", 200, body=wanted,
+                           headers={"Prefer": "wait=150"})["items"]
+    verdicts = [grasp["quality"]["physical"] for grasp in judged]
+    assert sum(verdict is not None for verdict in verdicts) == 1, verdicts
+    held = contract.call("queryGrasps", 200, query={
+        "transfer": answer["transfer_id"], "verified": "physical"})["items"]
+    assert len(held) == verdicts.count(1.0)
+    job = contract.call("postVerification", 202, body=wanted | {"parts": ["body"]},
+                        headers={"Prefer": "respond-async"})
+    done = wait_for(contract, job["id"], "succeeded")
+    assert done["kind"] == "verify"
+    listed = requests.get(contract.base_url + done["result"]["href"], timeout=20).json()
+    assert {g["provenance"]["transfer"] for g in listed["items"]} == {answer["transfer_id"]}
+
+
+@pytest.mark.parametrize("body, status", [
+    ({"category": "spoon"}, 404), ({"transfer": UNKNOWN_HASH}, 404),
+    ({"category": "mug", "parts": ["lid"]}, 404), ({"stage": "held"}, 400),
+    ({"limit": -1}, 400), ({"unknown": 1}, 400)])
+def test_an_unusable_verification_order_is_refused(contract, world, body, status):
+    contract.call("postVerification", status, body=body)
+
+
 def test_a_running_job_can_be_cancelled(contract, world):
     job = contract.call("postGraspSpaces", 202,
                         path={"id": world["example"]["id"]},

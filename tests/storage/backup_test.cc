@@ -73,7 +73,7 @@ TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
   std::thread writer([&] {
     while (!stop) {
       const auto written =
-          store_->InsertJob(JobKind::kLearn, true, "{}", "payload", "");
+          store_->InsertJob(JobKind::kLearn, true, "{}", "payload", {});
       EXPECT_TRUE(written);
       ++acknowledged;
     }

@@ -48,7 +48,7 @@ std::string MakeDatabase(const std::string& path) {
   const NewTransfer transfer =
       MakeNewTransfer(space, grasps, store->ListParts(novel.id).value()[1]);
   EXPECT_TRUE(store->InsertTransfer(transfer.record, transfer.grasps));
-  EXPECT_TRUE(store->InsertJob(JobKind::kLearn, true, "{}", "", ""));
+  EXPECT_TRUE(store->InsertJob(JobKind::kLearn, true, "{}", "", {}));
   store.reset();
   return ReadFile(path);
 }

@@ -34,11 +34,12 @@ async function readJson<Body>(response: Promise<Response>): Promise<Body> {
 
 const getJson = <Body>(path: string): Promise<Body> => readJson<Body>(send(path));
 
+// Of what becomes a job only the end is of interest.
 const sendJson = <Body>(method: string, path: string, body: unknown): Promise<Body> =>
   readJson<Body>(
     send(path, {
       method,
-      headers: { 'Content-Type': 'application/json' },
+      headers: { 'Content-Type': 'application/json', Prefer: 'wait=600' },
       body: JSON.stringify(body),
     }),
   );

@@ -359,7 +359,10 @@ export interface paths {
         };
         readonly get?: never;
         readonly put?: never;
-        /** Segment again, with other settings or explicit face labels. */
+        /**
+         * Segment again, with other settings or explicit face labels.
+         * @description A job, mostly one of a second.
+         */
         readonly post: operations["postSegmentation"];
         readonly delete?: never;
         readonly options?: never;
@@ -540,6 +543,26 @@ export interface paths {
         readonly get: operations["listParameters"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/v1/verifications": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Let a simulator judge stored grasps.
+         * @description A job. Each grasp closes on its object in MuJoCo, apart from all that the engine knows of contacts, and is pushed along six directions; what becomes of it is quality.physical from then on, and GET /v1/grasps with verified=physical finds those that withstood every push. Takes a second or two of a core a grasp.
+         */
+        readonly post: operations["postVerification"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -1121,6 +1144,27 @@ export interface components {
             readonly face_labels?: readonly string[];
             readonly seed?: components["schemas"]["Seed"];
         };
+        /** @description Which grasps; what is absent does not filter. */
+        readonly VerificationInput: {
+            readonly category?: string;
+            /** @description Labels. */
+            readonly parts?: readonly string[];
+            readonly hand?: string;
+            readonly object?: string;
+            readonly grasp_space?: string;
+            readonly transfer?: string;
+            readonly stage?: components["schemas"]["GraspStage"];
+            /**
+             * @description Most grasps, the highest eps first; 0: all.
+             * @default 0
+             */
+            readonly limit: number;
+            /**
+             * @description Also those that were judged before.
+             * @default false
+             */
+            readonly again: boolean;
+        };
         readonly LearnInput: {
             /** @description Labels; default: all. */
             readonly parts?: readonly string[];
@@ -1260,7 +1304,7 @@ export interface components {
         readonly Job: {
             readonly id: components["schemas"]["Uuid"];
             /** @enum {string} */
-            readonly kind: "import" | "learn" | "transfer";
+            readonly kind: "import" | "learn" | "transfer" | "segment" | "verify";
             readonly state: components["schemas"]["JobState"];
             readonly progress: components["schemas"]["Share"];
             /** @description What it is doing, in words. */
@@ -1282,6 +1326,7 @@ export interface components {
                 readonly hint: string | null;
                 readonly field: string | null;
             };
+            readonly deadline_at: components["schemas"]["Time"] | null;
             readonly created_at: components["schemas"]["Time"];
             readonly started_at: components["schemas"]["Time"] | null;
             readonly finished_at: components["schemas"]["Time"] | null;
@@ -1422,6 +1467,8 @@ export interface components {
         readonly UuidPath: components["schemas"]["Uuid"];
         readonly ContentIdPath: components["schemas"]["ContentId"];
         readonly NamePath: string;
+        /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+        readonly Deadline: number;
         /**
          * @description RFC 7240: wait=N waits up to N seconds (at most 600) for the job to end, respond-async does not wait.
          * @example wait=30
@@ -1617,7 +1664,7 @@ export interface operations {
                 readonly transfer?: components["schemas"]["ContentId"];
                 /** @description Least Ferrari-Canny quality. */
                 readonly min_epsilon?: number;
-                /** @description Only grasps that held in the simulator through every push, see graspdb verify. */
+                /** @description Only grasps that held in the simulator through every push, see POST /v1/verifications. */
                 readonly verified?: "physical";
                 readonly stage?: components["schemas"]["GraspStage"];
                 /** @description epsilon, highest first; merit, what holds in a simulator first, then the surest grip; hybrid, lowest first; robust, highest first and unknown last; newest. */
@@ -1690,6 +1737,8 @@ export interface operations {
                 readonly parameters?: string;
                 /** @description How grasps are written: csv, one line each; ros, a list of moveit_msgs/Grasp; graspit, a world of GraspIt! 4 with a robot per grasp (one hand only) and the object as models/objects/{id}.xml, whose mesh, in millimetres there, comes from /v1/objects/{id}/mesh. */
                 readonly as?: components["parameters"]["As"];
+                /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+                readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
                 /**
@@ -2028,6 +2077,8 @@ export interface operations {
                 readonly learn?: boolean;
                 /** @description Of every random choice. */
                 readonly seed?: components["parameters"]["Seed"];
+                /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+                readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
                 /**
@@ -2265,8 +2316,15 @@ export interface operations {
             readonly query?: {
                 /** @description Whether grasps that depend on it go too; otherwise they are a 409. */
                 readonly cascade?: components["parameters"]["Cascade"];
+                /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+                readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
+                /**
+                 * @description RFC 7240: wait=N waits up to N seconds (at most 600) for the job to end, respond-async does not wait.
+                 * @example wait=30
+                 */
+                readonly Prefer?: components["parameters"]["Prefer"];
                 /** @description The same request with the same key has one effect and gets the first answer again. */
                 readonly "Idempotency-Key"?: components["parameters"]["IdempotencyKey"];
             };
@@ -2297,6 +2355,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Object"];
                 };
             };
+            readonly 202: components["responses"]["Accepted"];
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 408: components["responses"]["RequestTimeout"];
@@ -2310,7 +2369,10 @@ export interface operations {
     };
     readonly postGraspSpaces: {
         readonly parameters: {
-            readonly query?: never;
+            readonly query?: {
+                /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+                readonly deadline?: components["parameters"]["Deadline"];
+            };
             readonly header?: {
                 /**
                  * @description RFC 7240: wait=N waits up to N seconds (at most 600) for the job to end, respond-async does not wait.
@@ -2691,6 +2753,58 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+        };
+    };
+    readonly postVerification: {
+        readonly parameters: {
+            readonly query?: {
+                /** @description How long the job may take, waiting for its turn included. A transfer then answers what it has found, with complete false and under ids of its own, the grasps told before as well; any other job fails with deadline_exceeded and leaves nothing half done. */
+                readonly deadline?: components["parameters"]["Deadline"];
+            };
+            readonly header?: {
+                /**
+                 * @description RFC 7240: wait=N waits up to N seconds (at most 600) for the job to end, respond-async does not wait.
+                 * @example wait=30
+                 */
+                readonly Prefer?: components["parameters"]["Prefer"];
+                /** @description The same request with the same key has one effect and gets the first answer again. */
+                readonly "Idempotency-Key"?: components["parameters"]["IdempotencyKey"];
+            };
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: {
+            readonly content: {
+                /**
+                 * @example {
+                 *       "category": "mug",
+                 *       "stage": "assembly",
+                 *       "limit": 10
+                 *     }
+                 */
+                readonly "application/json": components["schemas"]["VerificationInput"];
+            };
+        };
+        readonly responses: {
+            /** @description The job ended within Prefer's wait; the grasps, the surest first, with their verdicts. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["GraspList"];
+                };
+            };
+            readonly 202: components["responses"]["Accepted"];
+            readonly 400: components["responses"]["BadRequest"];
+            readonly 404: components["responses"]["NotFound"];
+            readonly 408: components["responses"]["RequestTimeout"];
+            readonly 409: components["responses"]["Conflict"];
+            readonly 413: components["responses"]["TooLarge"];
+            readonly 415: components["responses"]["UnsupportedMediaType"];
+            readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly listJobs: {

@@ -236,6 +236,54 @@ TEST_F(GripperPipeline, TheExamplesQualityOnItsWholeIsZeroWhereItObstructs) {
   }
 }
 
+TEST_F(GripperPipeline, TheDeadlineLeavesWhatWasFoundAndMarksTheRest) {
+  TransferRequest request = MakeRequest(box_E_, LearnedBox(), 1);
+  ExecutionContext context;
+  request.on_record = [&](int i, const TransferRecord&) {
+    if (i == 1) context.set_deadline(ExecutionContext::Clock::time_point{});
+  };
+  const auto cut = Transfer(request, context).value();
+  EXPECT_FALSE(cut.complete);
+  request.on_record = {};
+  const TransferResult whole = Run(request);
+  ASSERT_EQ(cut.records.size(), whole.records.size());
+  for (size_t i = 0; i < cut.records.size(); ++i) {
+    EXPECT_EQ(cut.records[i].cut, i > 1);
+    EXPECT_FALSE(whole.records[i].cut);
+    if (i > 1) {
+      EXPECT_FALSE(cut.records[i].assembled);
+    } else {
+      EXPECT_EQ(cut.records[i].assembled, whole.records[i].assembled);
+    }
+  }
+}
+
+TEST_F(GripperPipeline, CancellingEndsATransferWithAnError) {
+  TransferRequest request = MakeRequest(box_E_, LearnedBox(), 1);
+  ExecutionContext context;
+  context.Cancel();
+  EXPECT_EQ(Transfer(request, context).error().code, ErrorCode::kCancelled);
+}
+
+TEST_F(GripperPipeline, WhatTheSwarmHadFoundWhenItWasCancelledIsNoGraspSpace) {
+  for (const bool by_deadline : {false, true}) {
+    ExecutionContext context([&](const std::string& stage, double) {
+      if (stage != "swarm") return;
+      if (by_deadline) {
+        context.set_deadline(ExecutionContext::Clock::time_point{});
+      } else {
+        context.Cancel();
+      }
+    });
+    const auto learned = Learn({gripper_, MakePart(box_E_), Label(box_E_),
+                                MakeSmallParameters(), 1, 1},
+                               context);
+    ASSERT_FALSE(learned);
+    EXPECT_EQ(learned.error().code, ErrorCode::kCancelled);
+    EXPECT_EQ(context.TimedOut(), by_deadline);
+  }
+}
+
 TEST_F(GripperPipeline, CancellingEndsLearning) {
   ExecutionContext context;
   context.Cancel();

@@ -2,10 +2,12 @@
 #include "server/files.h"
 #include "server/jobs/data_folder.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -18,6 +20,7 @@ namespace graspdb {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -616,6 +619,94 @@ TEST_F(ServiceTest, ACancelledJobStopsSoonAndStoresNothing) {
             JobState::kCancelled);
   EXPECT_EQ(service->CancelJob(first.id).value().state, JobState::kCancelled);
   EXPECT_EQ(service->store().Count().value().grasp_spaces, 0);
+}
+
+TEST_F(ServiceTest, ATransferThatItsDeadlineCutAnswersNoOtherRequest) {
+  const auto service = MakeService(Copy("learned"));
+  ExecutionContext hasty([&](const std::string& stage, double) {
+    if (stage.find("transferring") != std::string::npos) {
+      hasty.set_deadline(ExecutionContext::Clock::time_point{});
+    }
+  });
+  TransferOrder order = MakeOrder();
+  order.sources = 8;
+  // One thread, so that nobody reads the deadline while it is set.
+  const auto alone = MakeService(service->store().path(), 1);
+  const auto cut = alone->TransferGrasps(order, hasty).value().transfer;
+  EXPECT_FALSE(cut.complete);
+  EXPECT_THAT(cut.warnings, Contains(HasSubstr("deadline")));
+  EXPECT_LT(cut.attempts.size(), 8u);
+
+  const auto whole = service->TransferGrasps(order, context_).value().transfer;
+  EXPECT_TRUE(whole.complete);
+  EXPECT_THAT(whole.attempts, SizeIs(8));
+  EXPECT_NE(whole.id, cut.id);
+  EXPECT_TRUE(service->store().FindTransfer(cut.id));
+
+  // In time it is the same as without.
+  ExecutionContext patient;
+  patient.set_deadline(ExecutionContext::Clock::now() + kLongEnough);
+  EXPECT_EQ(service->TransferGrasps(order, patient).value().transfer.id,
+            whole.id);
+}
+
+TEST_F(ServiceTest, AJobThatMissesItsDeadlineFailsAndStoresNothing) {
+  const auto service = MakeService(Copy("imported"));
+  LearnOrder lesson;
+  lesson.object_id = FindExample(*service);
+  const auto queued = service->SubmitLearn(lesson, {.deadline = 0.1}).value();
+  EXPECT_TRUE(queued.deadline);
+  std::this_thread::sleep_for(milliseconds(100));
+  ASSERT_TRUE(service->StartWorkers());
+  const auto done = service->WaitForJob(queued.id, kLongEnough).value();
+  ASSERT_EQ(done.state, JobState::kFailed);
+  EXPECT_EQ(done.error.value().code, ErrorCode::kDeadlineExceeded);
+  EXPECT_EQ(service->store().Count().value().grasp_spaces, 0);
+}
+
+TEST_F(ServiceTest, SegmentingAgainIsAJob) {
+  const auto service = MakeService(Copy("imported"));
+  ASSERT_TRUE(service->StartWorkers());
+  const auto object =
+      service->ImportObject(MakeNovelOrder(), context_).value().object;
+  SegmentOrder order;
+  order.object_id = object.id;
+  order.settings = R"({"pairwise_weight": 0.5})";
+  order.seed = 7;
+  const auto queued = service->SubmitSegment(order).value();
+  const auto done = service->WaitForJob(queued.id, kLongEnough).value();
+  ASSERT_EQ(done.state, JobState::kSucceeded);
+  EXPECT_EQ(done.result_id, object.id);
+  order.face_labels = {"body"};
+  const auto wrong = service->SubmitSegment(order).value();
+  const auto failed = service->WaitForJob(wrong.id, kLongEnough).value();
+  ASSERT_EQ(failed.state, JobState::kFailed);
+  EXPECT_EQ(failed.error.value().field, "face_labels");
+  order.object_id = "x";
+  EXPECT_EQ(service->SubmitSegment(order).error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(ServiceTest, VerificationIsAJob) {
+  const auto service = MakeService(Copy("learned"));
+  ASSERT_TRUE(service->StartWorkers());
+  VerifyOrder order;
+  order.query.category = "mug";
+  order.query.stage = GraspStage::kLearned;
+  order.limit = 2;
+  const auto queued = service->SubmitVerify(order).value();
+  const auto done = service->WaitForJob(queued.id, kLongEnough).value();
+  ASSERT_EQ(done.state, JobState::kSucceeded)
+      << done.error.value_or(Error{}).message;
+  GraspSearch search;
+  search.query = order.query;
+  const auto grasps = service->QueryGrasps(search).value().items;
+  EXPECT_EQ(std::count_if(grasps.begin(), grasps.end(),
+                          [](const StoredGrasp& grasp) {
+                            return grasp.physical.has_value();
+                          }),
+            2);
+  order.query.category = "cup";
+  EXPECT_EQ(service->SubmitVerify(order).error().code, ErrorCode::kNotFound);
 }
 
 TEST_F(ServiceTest, AJobThatTheServersEndInterruptedIsDoneByTheNext) {

@@ -458,10 +458,10 @@ TEST_F(StoreTest, NewPartsReplaceTheOldOnesButNotUnderGraspsThatUseThem) {
 
 TEST_F(StoreTest, JobsAreClaimedOnceInOrderSlowOnesApart) {
   const std::string first =
-      store_->InsertJob(JobKind::kTransfer, false, "{}", "mesh", "").value().id;
-  store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
+      store_->InsertJob(JobKind::kTransfer, false, "{}", "mesh", {}).value().id;
+  store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value();
   const std::string third =
-      store_->InsertJob(JobKind::kTransfer, false, "{}", "", "").value().id;
+      store_->InsertJob(JobKind::kTransfer, false, "{}", "", {}).value().id;
   EXPECT_EQ(store_->ClaimJob(false).value()->id, first);
   EXPECT_EQ(store_->ReadJobPayload(first).value(), "mesh");
   EXPECT_EQ(store_->ClaimJob(false).value()->id, third);
@@ -471,7 +471,7 @@ TEST_F(StoreTest, JobsAreClaimedOnceInOrderSlowOnesApart) {
 
 TEST_F(StoreTest, AJobEndsOnceWithItsErrorAndWithoutItsPayload) {
   StoredJob job =
-      store_->InsertJob(JobKind::kImport, false, "{}", "m", "").value();
+      store_->InsertJob(JobKind::kImport, false, "{}", "m", {}).value();
   job.state = JobState::kFailed;
   job.error = Error{ErrorCode::kUnusableInput, "no mesh", "try stl", "format"};
   EXPECT_EQ(store_->FinishJob(job).value().error, job.error);
@@ -481,7 +481,7 @@ TEST_F(StoreTest, AJobEndsOnceWithItsErrorAndWithoutItsPayload) {
 }
 
 TEST_F(StoreTest, JobsThatADeadProcessLeftRunningAreQueuedAgain) {
-  store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
+  store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value();
   store_->ClaimJob(true).value();
   Reopen();
   EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 1);
@@ -490,7 +490,7 @@ TEST_F(StoreTest, JobsThatADeadProcessLeftRunningAreQueuedAgain) {
 
 TEST_F(StoreTest, AJobThatKilledThreeProcessesFails) {
   const auto job =
-      store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value();
+      store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value();
   const auto claim = [&] { return store_->ClaimJob(true).value().has_value(); };
   for (int i = 0; i < 5; ++i) {  // Interruptions in good order do not count.
     EXPECT_TRUE(claim());
@@ -507,17 +507,18 @@ TEST_F(StoreTest, AJobThatKilledThreeProcessesFails) {
 
 TEST_F(StoreTest, JobsWithTheSameIdempotencyKeyAreOne) {
   const auto first =
-      store_->InsertJob(JobKind::kLearn, true, "{}", "", "k").value();
-  EXPECT_EQ(store_->InsertJob(JobKind::kLearn, true, "{}", "", "k").value().id,
-            first.id);
+      store_->InsertJob(JobKind::kLearn, true, "{}", "", {"k"}).value();
   EXPECT_EQ(
-      store_->InsertJob(JobKind::kLearn, true, "[]", "", "k").error().code,
+      store_->InsertJob(JobKind::kLearn, true, "{}", "", {"k"}).value().id,
+      first.id);
+  EXPECT_EQ(
+      store_->InsertJob(JobKind::kLearn, true, "[]", "", {"k"}).error().code,
       ErrorCode::kKeyReused);
 }
 
 TEST_F(StoreTest, NoMoreJobsAreQueuedThanAllowed) {
   const auto insert = [&](bool slow, const std::string& key) {
-    return store_->InsertJob(JobKind::kLearn, slow, "{}", "", key, 2);
+    return store_->InsertJob(JobKind::kLearn, slow, "{}", "", {key}, 2);
   };
   EXPECT_TRUE(insert(true, "first"));
   EXPECT_TRUE(insert(true, ""));
@@ -533,7 +534,7 @@ TEST_F(StoreTest, JobsAreListedNewestFirst) {
   for (int i = 0; i < 5; ++i) {
     ids.insert(
         ids.begin(),
-        store_->InsertJob(JobKind::kLearn, true, "{}", "", "").value().id);
+        store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value().id);
   }
   const auto page = store_->ListJobs(std::nullopt, {3, ""}).value();
   ASSERT_THAT(page.items, SizeIs(3));

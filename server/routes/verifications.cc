@@ -1,0 +1,53 @@
+#include "server/codec/input_json.h"
+#include "server/codec/record_json.h"
+#include "server/routes/routes.h"
+#include "server/routes/support.h"
+
+namespace graspdb {
+namespace {
+
+constexpr int kMostListed = 1000;
+
+/** The grasps that were to be judged, with what is known of them now. */
+Result<HttpResponse> ListJudged(const Service& service,
+                                const VerifyOrder& order) {
+  GraspSearch search;
+  search.query = order.query;
+  search.query.sort = GraspQuery::Sort::kMerit;
+  search.query.page.limit = kMostListed;
+  GRASPDB_TRY(page, service.QueryGrasps(search));
+  std::vector<std::string> items;
+  for (const StoredGrasp& grasp : page.items) {
+    GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
+    items.push_back(ToJson(grasp, *hand));
+  }
+  return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
+}
+
+Result<HttpResponse> PostVerification(Service& service,
+                                      const RouteOptions& options,
+                                      const HttpRequest& request) {
+  QueryReader query(request.query);
+  const auto deadline = ReadDeadline(query);
+  GRASPDB_TRY_VOID(query.Finish());
+  GRASPDB_TRY(order, VerifyOrderFromJson(BodyOrEmptyObject(request)));
+  GRASPDB_TRY_VOID(CheckPartLabels(service.store(), order.query.category,
+                                   order.query.part_labels));
+  GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
+  GRASPDB_TRY(job, service.SubmitVerify(order, {idempotency.key(), deadline}));
+  return AnswerJob(
+      service, request, options.default_wait, job, idempotency,
+      [&](const StoredJob&) { return ListJudged(service, order); });
+}
+
+}  // namespace
+
+void AddVerificationRoutes(Router& router, Service& service,
+                           const RouteOptions& options) {
+  router.Add({"POST", "/v1/verifications", BodyKind::kJson,
+              [&service, options](const HttpRequest& request) {
+                return PostVerification(service, options, request);
+              }});
+}
+
+}  // namespace graspdb
