@@ -271,6 +271,7 @@ struct StoredTransfer {
   std::string engine_version;
   double similarity{0.0};  ///< Of object and example, 0..1.
   bool complete{true};     ///< False when the deadline cut it.
+  std::string cut_of;      ///< The id it then would have had; empty otherwise.
   /** Sources were tried until so many grasps were sure; unset: all were. */
   std::optional<int> enough;
   std::vector<StoredAttempt> attempts;

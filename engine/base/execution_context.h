@@ -10,8 +10,9 @@ namespace graspdb {
 
 /** How a long computation hears of cancellation and deadline and tells of its
  progress: the only clock that what the engine computes may depend on. The last
- argument of every long function. Cancelled() and Cancel() may be called from
- any thread; ReportProgress() is called from the computing threads, one at a
+ argument of every long function. Cancelled(), TimedOut() and Cancel() may be
+ called from any thread, the setters only before others know of it;
+ ReportProgress() is called from the computing threads, one at a
  time. */
 class ExecutionContext {
  public:

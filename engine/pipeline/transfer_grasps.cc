@@ -175,14 +175,14 @@ class Transferrer {
     const ReplanParameters& replan = parameters_.replan;
     const Effort whole{replan.climb_samples, replan.searches};
     if (!request_.enough) {
-      Try(records, MakeOrder(records.size()), whole, 1.0, result);
+      Try(records, MakeOrder(records.size()), whole, false, 1.0, result);
       return;
     }
     SortByPromise(records);
     const Effort quick{
         std::min(replan.quick_climb_samples, replan.climb_samples), 1};
     const int tried =
-        Try(records, MakeOrder(records.size()), quick, 0.8, result);
+        Try(records, MakeOrder(records.size()), quick, false, 0.8, result);
     records.resize(static_cast<size_t>(tried));
     if (found_ >= *request_.enough || quick == whole) return;
     std::vector<int> unsure;
@@ -197,7 +197,7 @@ class Transferrer {
     std::stable_sort(unsure.begin(), unsure.end(), [&](int a, int b) {
       return records[a].robust.gripped > records[b].robust.gripped;
     });
-    Try(records, unsure, whole, 1.0, result);
+    Try(records, unsure, whole, true, 1.0, result);
   }
 
   static std::vector<int> MakeOrder(size_t count) {
@@ -206,14 +206,14 @@ class Transferrer {
     return order;
   }
 
-  // Tries records, anew, until there are enough sure ones. @returns how many of
-  // the order were tried; the other records are as they were.
+  // Tries records until there are enough sure ones. @returns how many of the
+  // order were tried; the other records are as they were. `again`: they have
+  // been tried before.
   int Try(std::vector<TransferRecord>& records, const std::vector<int>& order,
-          const Effort& effort, double end, TransferResult& result) {
+          const Effort& effort, bool again, double end,
+          TransferResult& result) {
     const auto count = static_cast<int>(order.size());
     std::vector<TransferRecord> tried(order.size());
-    std::vector<char> whole(order.size(), 0);
-    std::atomic<bool> complete{true};
     const double begin = std::exchange(share_, end);
     const int last = ParallelUntil(
         count,
@@ -222,14 +222,15 @@ class Transferrer {
           tried[i].source_grasp = records[order[i]].source_grasp;
           TransferOne(tried[i], effort,
                       [&] { return wanted() && !context_.Cancelled(); });
-          whole[i] = context_.Cancelled() ? 0 : 1;
-          tried[i].cut = whole[i] == 0;
-          if (tried[i].cut) complete = false;
+          tried[i].cut = context_.Cancelled();
         },
         [&](int i) {
           TransferRecord& record = records[order[i]];
-          // What was cut short does not replace what there is.
-          if (whole[i] == 0 && FindGrasp(record)) return false;
+          if (tried[i].cut) {
+            result.complete = false;
+            // What was cut short does not replace what there is.
+            if (again) return false;
+          }
           tried[i].transfer_seconds += record.transfer_seconds;
           tried[i].assembly_seconds += record.assembly_seconds;
           record = std::move(tried[i]);
@@ -243,7 +244,6 @@ class Transferrer {
                                   begin + (end - begin) * share);
           return request_.enough && found_ >= *request_.enough;
         });
-    result.complete = result.complete && complete;
     return last;
   }
 

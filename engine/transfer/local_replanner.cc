@@ -111,15 +111,14 @@ class Replanner {
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
     const std::vector<Rated> ranked = RankStarts(starts);
+    const double likely = std::min(replan_.likely_grip, replan_.enough_grip);
     std::optional<Kept> best;
     for (int i = 0; i < options_.searches; ++i) {
-      best_.reset();
+      // The first one also knows what the starts hold.
+      if (i > 0) best_.reset();
       Search(ranked);
       if (best_ && (!best || best_->merit > best->merit)) best = best_;
-      if (!best_ || !IsWanted() || !UsesGrip() ||
-          best->merit.sure >= replan_.likely_grip) {
-        break;
-      }
+      if (!best_ || !IsWanted() || !UsesGrip() || best->share >= likely) break;
     }
     if (!best) return {furthest_, std::nullopt};
     return {TransferOutcome::kSucceeded, std::move(best->grasp)};
@@ -152,16 +151,18 @@ class Replanner {
   struct Kept {
     Grasp grasp;
     Merit merit;
+    double share;   // Of the copies that are held.
     Sample sample;  // How it came about.
   };
 
   // Anneals until there is a grasp, one start after the other, farther on each
   // time it is called, and climbs from there.
   void Search(const std::vector<Rated>& ranked) {
-    for (int i = 0; !best_ && i < replan_.cycles && IsWanted(); ++i) {
+    int annealings = 0;
+    do {
       Anneal(ranked[cycle_ % ranked.size()], kReaches[cycle_ % 3]);
       ++cycle_;
-    }
+    } while (!best_ && ++annealings < replan_.cycles && IsWanted());
     if (best_ && UsesGrip()) Climb();
   }
 
@@ -347,7 +348,7 @@ class Replanner {
     if (!exact.ok() || !Counts(exact.grasp)) return false;
     const Merit merit = MakeMerit(exact.grasp, share);
     if (!(merit > BestMerit()) || !CanBeReached(exact.grasp)) return false;
-    best_ = {exact.grasp, merit, sample};
+    best_ = {exact.grasp, merit, share, sample};
     ++num_gains_;
     return true;
   }

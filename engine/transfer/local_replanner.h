@@ -52,8 +52,8 @@ struct ReplanOptions {
   int searches{1};  ///< … and how often all that, until one is likely to hold.
   bool grip{true};  ///< Whether disturbed copies choose; else ε does.
   double epsilon_to_beat{0.0};  ///< What open-close reaches.
-  /** Whether to go on; may be empty. Once it says no, the result is of no
-   account. */
+  /** Whether to go on; may be empty. Once it says no, the result is the best
+   so far. */
   Wanted wanted{};
 };
 
@@ -64,9 +64,9 @@ struct ReplanOptions {
  one with the largest ε, or, with grip_copies, the one that the most perturbed
  copies hold, up to enough_grip, where an ε that does not beat open-close costs
  behind_cost of them; then ε. With grip_copies up to options.climb_samples more
- are then tried around the best, and where that holds in less than likely_grip
- of the copies the whole search is repeated, options.searches in all.
- Deterministic for a seed. @paper{Sec. V-B} */
+ are then tried around the best, and while fewer than likely_grip of the copies
+ are held all that is repeated, options.searches in all. Deterministic for a
+ seed. @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed, const ReplanOptions& options = {});

@@ -300,8 +300,7 @@ CREATE INDEX attempts_by_assembled ON transfer_attempts (assembled_grasp_id);
 
 CREATE TABLE jobs (
   id TEXT PRIMARY KEY,
-  kind TEXT NOT NULL CHECK (
-    kind IN ('import', 'learn', 'transfer', 'segment', 'verify')),
+  kind TEXT NOT NULL CHECK (kind IN ('import', 'learn', 'transfer')),
   state TEXT NOT NULL CHECK (
     state IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')),
   -- 1: takes minutes, and is worked on apart from what someone waits for.
@@ -319,7 +318,6 @@ CREATE TABLE jobs (
   created_at TEXT NOT NULL,
   started_at TEXT,
   finished_at TEXT,
-  deadline INTEGER,  -- milliseconds of Unix time; NULL: none
   payload BLOB  -- the mesh to import; NULL once the job has finished
 ) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, slow, id);

@@ -20,6 +20,7 @@ namespace {
 constexpr JsonLimits kAnswerLimits{256 << 20, 64};
 constexpr std::chrono::milliseconds kPoll{300};
 constexpr std::chrono::seconds kReadTimeout{660};
+constexpr double kLongestDeadline = 500.0;  // s; a server waits 600 at most.
 
 struct Reply {
   int status{0};
@@ -79,6 +80,12 @@ class RemoteBackend : public Backend {
     }
     const std::string target = "/v1/grasps" + query.text();
     if (deadline) {  // What is cut is not found again: wait for it.
+      if (*deadline > kLongestDeadline) {
+        return Error{ErrorCode::kInvalidArgument,
+                     "With --server a deadline is at most 500 s.", "",
+                     "deadline"};
+      }
+      progress.Report("the server searches", 0.0);
       GRASPDB_TRY(reply, Post(target, order.mesh.bytes, "wait=600"));
       if (reply.status != 202) return reply.body;
       return Error{ErrorCode::kDeadlineExceeded, "The server is still at it.",

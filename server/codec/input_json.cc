@@ -115,6 +115,11 @@ std::vector<CategoryExample> ReadExamples(JsonFields& fields,
 
 // ---- Labels -----------------------------------------------------------------
 
+// No mesh has more faces, no part a longer label.
+constexpr uint64_t kMostFaces = 1'000'000;
+constexpr size_t kMostLabelBytes = 64;
+constexpr size_t kMostParts = 64;
+
 // {"body": [[0, 10]], ...}: half-open ranges that together cover all faces.
 Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
   struct Range {
@@ -127,12 +132,13 @@ Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
   if (!faces.is_object()) return Invalid(takes, "faces");
   std::vector<Range> ranges;
   for (const auto& [label, list] : faces.items()) {
+    if (label.size() > kMostLabelBytes) return Invalid(takes, "faces");
     if (!list.is_array()) return Invalid(takes, "faces." + label);
     for (const Json& range : list) {
       const bool sound = range.is_array() && range.size() == 2 &&
                          range[0].is_number_unsigned() &&
                          range[1].is_number_unsigned() &&
-                         range[1].get<uint64_t>() <= 10'000'000 &&
+                         range[1].get<uint64_t>() <= kMostFaces &&
                          range[0].get<uint64_t>() < range[1].get<uint64_t>();
       if (!sound) return Invalid(takes, "faces." + label);
       ranges.push_back({range[0].get<int>(), range[1].get<int>(), label});
@@ -412,6 +418,9 @@ Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
   GraspQuery& query = order.query;
   fields.Read("category", query.category);
   fields.Read("parts", query.part_labels);
+  if (query.part_labels.size() > kMostParts) {
+    fields.Fail("parts", "at most 64 labels");
+  }
   fields.Read("hand", query.hand);
   fields.Read("object", query.object_id);
   fields.Read("grasp_space", query.grasp_space_id);
@@ -426,7 +435,8 @@ Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
       fields.Fail(parsed.error());
     }
   }
-  fields.ReadInteger("limit", order.limit, 0, 1'000'000);
+  order.limit = 1000;
+  fields.ReadInteger("limit", order.limit, 1, 10'000);
   fields.Read("again", order.again);
   GRASPDB_TRY_VOID(fields.Finish());
   return order;

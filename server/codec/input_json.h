@@ -72,7 +72,8 @@ Result<SegmentOrder> SegmentOrderFromJson(const std::string& text);
 Result<LearnOrder> LearnOrderFromJson(const std::string& text);
 
 /** POST /v1/verifications: {"category", "parts": [...], "hand", "object",
- "grasp_space", "transfer", "stage", "limit", "again"}, all optional. */
+ "grasp_space", "transfer", "stage", "limit", "again"}, all optional; no more
+ than 1000 grasps unless limit says. */
 Result<VerifyOrder> VerifyOrderFromJson(const std::string& text);
 
 // Orders in the jobs table, whole but for the bytes of a mesh.

@@ -19,13 +19,6 @@ constexpr double kLeastProgressForEta = 0.02;
 // Of the progress of importing and learning an example.
 constexpr double kImportShare = 0.05;
 
-Error MakeTimedOut() {
-  return {ErrorCode::kDeadlineExceeded,
-          "The deadline passed before the work was done.",
-          "allow more time with deadline; GET /v1/jobs tells what else waits",
-          "deadline"};
-}
-
 }  // namespace
 
 JobRunner::JobRunner(Service& service) : service_(service) {}
@@ -84,6 +77,13 @@ void JobRunner::Notify() {
 
 Result<StoredJob> JobRunner::Find(const std::string& id) const {
   GRASPDB_TRY(job, service_.store().FindJob(id));
+  // Nobody waits for a turn that comes too late.
+  if (job.state == JobState::kQueued && job.deadline &&
+      CalcUnixMilliseconds() > *job.deadline) {
+    job.state = JobState::kFailed;
+    job.error = MakeTimedOut();
+    return service_.store().FinishJob(job);
+  }
   AddLiveState(job);
   return job;
 }
@@ -179,7 +179,9 @@ void JobRunner::Run(StoredJob job) {
     if (stopping_) context->Cancel();
   }
   Notify();
-  const Result<std::string> result = Execute(job, *context);
+  const Result<std::string> result = context->TimedOut()
+                                         ? Result<std::string>(MakeTimedOut())
+                                         : Execute(job, *context);
   bool cancelled_by_user = false;
   bool interrupted = false;
   {

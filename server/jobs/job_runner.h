@@ -37,6 +37,7 @@ class JobRunner {
   /** There is a new job. */
   void Wake();
 
+  /** One that missed its deadline while it was queued fails by it. */
   Result<StoredJob> Find(const std::string& id) const;
   /** Adds progress, stage and eta to a job that runs here. */
   void AddLiveState(StoredJob& job) const;

@@ -143,18 +143,22 @@ Result<ExampleSet> LoadExamples(const Store& store, const std::string& category,
   return examples;
 }
 
+Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
+                             int num_faces) {
+  if (std::ssize(labels) == num_faces) return {};
+  return Error{
+      ErrorCode::kInvalidArgument,
+      fmt::format("There are {} face labels for {} faces.", labels.size(),
+                  num_faces),
+      "label the faces of GET /v1/objects/{id}/mesh; a mesh that had to be "
+      "repaired has other faces than its file",
+      "face_labels"};
+}
+
 Result<SegmentedObject> SegmentByLabels(
     const StoredCategory& category, const ObjectMeshes& meshes,
     const std::vector<std::string>& labels) {
-  if (std::ssize(labels) != meshes.canonical.num_triangles()) {
-    return Error{
-        ErrorCode::kInvalidArgument,
-        fmt::format("There are {} face labels for {} faces.", labels.size(),
-                    meshes.canonical.num_triangles()),
-        "label the faces of GET /v1/objects/{id}/mesh; a mesh that had to be "
-        "repaired has other faces than its file",
-        "face_labels"};
-  }
+  GRASPDB_TRY_VOID(CheckFaceLabels(labels, meshes.canonical.num_triangles()));
   std::map<std::string, int> indices;
   for (const CategoryPart& part : category.parts) {
     indices.emplace(part.label, static_cast<int>(indices.size()));

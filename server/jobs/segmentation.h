@@ -29,6 +29,10 @@ struct ExampleSet {
 Result<ExampleSet> LoadExamples(const Store& store, const std::string& category,
                                 const std::string& except);
 
+/** @retval kInvalidArgument unless there is one label per face. */
+Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
+                             int num_faces);
+
 /** Takes over one label per face of the canonical mesh.
  @retval kInvalidArgument for unknown labels or a wrong number of them. */
 Result<SegmentedObject> SegmentByLabels(const StoredCategory& category,

@@ -15,6 +15,7 @@
 #include "server/files.h"
 #include "server/ids.h"
 #include "server/jobs/job_runner.h"
+#include "server/jobs/segmentation.h"
 
 namespace graspdb {
 namespace {
@@ -111,6 +112,14 @@ Result<void> CheckHandMeshes(const HandFiles& files) {
 }
 
 }  // namespace
+
+Error MakeTimedOut() {
+  return {ErrorCode::kDeadlineExceeded,
+          "The deadline passed before the work was done.",
+          "allow more time with deadline, under a new Idempotency-Key if any; "
+          "GET /v1/jobs tells what else waits",
+          "deadline"};
+}
 
 Service::Service(std::unique_ptr<Store> store, std::unique_ptr<Decoder> decoder,
                  const ServiceOptions& options)
@@ -280,8 +289,13 @@ Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
 
 Result<StoredJob> Service::SubmitSegment(const SegmentOrder& order,
                                          const JobTerms& terms) {
-  if (const auto object = store_->FindObject(order.object_id); !object) {
-    return object.error();
+  GRASPDB_TRY(object, store_->FindObject(order.object_id));
+  if (!order.category.empty() && order.category != "auto") {
+    const auto category = store_->FindCategory(order.category);
+    if (!category) return category.error();
+  }
+  if (!order.face_labels.empty()) {
+    GRASPDB_TRY_VOID(CheckFaceLabels(order.face_labels, object.num_triangles));
   }
   // Face labels may be many: they go when the job has ended.
   return Submit(JobKind::kSegment, false,

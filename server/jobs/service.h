@@ -78,6 +78,9 @@ struct VerifiedGrasp {
   PhysicalVerdict verdict;
 };
 
+/** kDeadlineExceeded. */
+Error MakeTimedOut();
+
 using GraspCallback = std::function<void(const StoredGrasp&)>;
 
 /** The verbs of the application, without HTTP: what the server's routes and the
@@ -142,7 +145,9 @@ class Service {
                                                     ExecutionContext& context);
   /** Maps, replans, assembles, stores; a transfer with the same inputs is
    answered from the store. One that the context's deadline cuts is stored with
-   what it found, under ids of its own: it answers no other request.
+   what it found, under ids of its own, until there is another of these inputs:
+   it answers no other request.
+   @retval kDeadlineExceeded when it passed before the search began.
    @param on_grasp  Hears of each grasp of the stage asked for as it is found,
      before it is stored: from the computing threads, one at a time. */
   Result<TransferAnswer> TransferGrasps(const TransferOrder& order,
@@ -162,7 +167,8 @@ class Service {
 
   // ---- Jobs -----------------------------------------------------------------
   // Submit… checks what can be checked at once (names, ranges, what is
-  // learned), writes the job to the database and returns it queued.
+  // learned, how many labels), writes the job to the database and returns it
+  // queued.
   Result<StoredJob> SubmitImport(const ImportOrder& order,
                                  const JobTerms& terms = {});
   Result<StoredJob> SubmitLearn(const LearnOrder& order,
@@ -220,6 +226,9 @@ class Service {
                            const std::string& payload, const JobTerms& terms);
   Result<ImportResult> ImportNewObject(const ImportOrder& order,
                                        ExecutionContext& context);
+  Result<TransferAnswer> FindOrMakeTransfer(const TransferOrder& order,
+                                            ExecutionContext& context,
+                                            const GraspCallback& on_grasp);
   Result<StoredObject> FindTransferObject(const TransferOrder& order,
                                           ExecutionContext& context);
 

@@ -328,6 +328,17 @@ Result<StoredObject> Service::FindTransferObject(const TransferOrder& order,
 Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
                                                ExecutionContext& context,
                                                const GraspCallback& on_grasp) {
+  auto answer = FindOrMakeTransfer(order, context, on_grasp);
+  if (!answer && answer.error().code == ErrorCode::kCancelled &&
+      context.TimedOut()) {
+    return MakeTimedOut();
+  }
+  return answer;
+}
+
+Result<TransferAnswer> Service::FindOrMakeTransfer(
+    const TransferOrder& order, ExecutionContext& context,
+    const GraspCallback& on_grasp) {
   const auto start = ExecutionContext::Clock::now();
   GRASPDB_TRY(checked, CheckTransfer(order));
   GRASPDB_TRY(novel, FindTransferObject(checked, context));
@@ -368,6 +379,7 @@ Result<TransferAnswer> Service::TransferGrasps(const TransferOrder& order,
   }
   if (!result.complete) {
     row.complete = false;
+    row.cut_of = row.id;
     row.id = MakeContentId("cut transfer " + MakeUuid());
     row.warnings.push_back(
         "the deadline ended the search: these are the grasps found until then");

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "server/codec/input_json.h"
 #include "server/codec/record_json.h"
 #include "server/routes/routes.h"
@@ -8,20 +10,19 @@ namespace {
 
 constexpr int kMostListed = 1000;
 
-/** The grasps that were to be judged, with what is known of them now. */
+/** The grasps that the filter describes, with what is known of them now. */
 Result<HttpResponse> ListJudged(const Service& service,
                                 const VerifyOrder& order) {
   GraspSearch search;
   search.query = order.query;
   search.query.sort = GraspQuery::Sort::kMerit;
-  search.query.page.limit = kMostListed;
+  search.query.page.limit = std::min(order.limit, kMostListed);
   GRASPDB_TRY(page, service.QueryGrasps(search));
-  std::vector<std::string> items;
-  for (const StoredGrasp& grasp : page.items) {
-    GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
-    items.push_back(ToJson(grasp, *hand));
-  }
-  return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
+  return MakeListResponse(
+      page, [&](const StoredGrasp& grasp) -> Result<std::string> {
+        GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
+        return ToJson(grasp, *hand);
+      });
 }
 
 Result<HttpResponse> PostVerification(Service& service,

@@ -66,10 +66,21 @@ std::string FindQueued(Database& database, bool slow) {
   return row.Bind(slow).Step() ? row.Text(0) : std::string();
 }
 
+// Whether a job was submitted with that payload, which may be gone.
+bool CarriesPayload(Database& database, const std::string& id,
+                    const std::string& payload_sha256) {
+  Statement row = database.Prepare(
+      "SELECT 1 FROM jobs WHERE id = ? AND"
+      " (payload_sha256 IS NULL OR payload_sha256 = ?)");
+  return row.Bind(id, payload_sha256).Step();
+}
+
+// Those that may still be done.
 int64_t CountQueued(Database& database, bool slow) {
   Statement row = database.Prepare(
-      "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?");
-  row.Bind(slow).Step();
+      "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?"
+      " AND (deadline IS NULL OR deadline > ?)");
+  row.Bind(slow, CalcUnixMilliseconds()).Step();
   return row.Int(0);
 }
 
@@ -79,9 +90,11 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
                                    const std::string& request,
                                    const std::string& payload,
                                    const JobTerms& terms, int64_t max_queued) {
+  const std::string payload_sha256 = CalcSha256(payload);
   return impl_->Write([&](Database& database) {
     if (auto known = FindJobByKey(database, terms.idempotency_key)) {
-      if (known->kind != kind || known->request != request) {
+      if (known->kind != kind || known->request != request ||
+          !CarriesPayload(database, known->id, payload_sha256)) {
         Throw(ErrorCode::kKeyReused,
               "The Idempotency-Key was used for another request.",
               "use a new key for a new request", "Idempotency-Key");
@@ -101,11 +114,11 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
     database
         .Prepare(
             "INSERT INTO jobs (id, kind, state, slow, request, idempotency_key,"
-            " progress, stage, created_at, deadline, payload)"
-            " VALUES (?, ?, 'queued', ?, ?, ?, 0, '', ?, ?, ?)")
+            " progress, stage, created_at, deadline, payload_sha256, payload)"
+            " VALUES (?, ?, 'queued', ?, ?, ?, 0, '', ?, ?, ?, ?)")
         .Bind(id, ToString(kind), slow, request)
         .BindTextOrNull(terms.idempotency_key)
-        .Bind(FormatTime(now), deadline)
+        .Bind(FormatTime(now), deadline, payload_sha256)
         .BindBlob(payload)
         .Run();
     return ReadJob(database, id);

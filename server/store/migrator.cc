@@ -103,9 +103,14 @@ void CreateDatabaseFile(const std::string& path) {
   std::error_code ignored;
   fs::remove(draft, ignored);
   try {
-    Database database(draft, Database::Mode::kReadWriteCreate);
-    ApplyMigrations(database, Migrations());
-    // From here on the header says so; a draft needs no log of its own.
+    {
+      Database database(draft, Database::Mode::kReadWriteCreate);
+      ApplyMigrations(database, Migrations());
+    }
+    // Another connection: one that has just dropped a table does not truncate
+    // its log. From here on the header says so; a draft needs no log of its
+    // own.
+    Database database(draft, Database::Mode::kReadWrite);
     database.Execute("PRAGMA journal_mode = WAL");
     database.QueryText("PRAGMA wal_checkpoint(TRUNCATE)");
   } catch (const StorageFailure&) {

@@ -153,7 +153,8 @@ class Store {
 
   // ---- Transfers ------------------------------------------------------------
   /** Stores a transfer with its grasps (their ids are used as given). One with
-   the same id is kept and answered instead. */
+   the same id is kept and answered instead; one of the same inputs that was cut
+   goes. */
   Result<StoredTransfer> InsertTransfer(const StoredTransfer& transfer,
                                         const std::vector<StoredGrasp>& grasps);
   Result<StoredTransfer> FindTransfer(const std::string& id) const;
@@ -165,7 +166,8 @@ class Store {
   /** @param slow  It takes minutes: kept apart from what someone waits for.
    @param payload  The bytes of a mesh, say; kept until the job ends.
    @param max_queued  Of the slow ones, or of the others.
-   @retval kKeyReused if the key's job asked for something else.
+   @retval kKeyReused if the key's job asked for something else or carries
+     another payload.
    @retval kOverloaded when as many are queued. */
   Result<StoredJob> InsertJob(
       JobKind kind, bool slow, const std::string& request,

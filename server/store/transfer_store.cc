@@ -66,14 +66,22 @@ void InsertTransferRow(Database& database, const StoredTransfer& transfer) {
   database
       .Prepare(
           "INSERT INTO transfers VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
-          " ?, ?)")
+          " ?, ?, ?)")
       .Bind(transfer.id, transfer.object_id, transfer.example_id,
             transfer.category, transfer.hand, ToString(transfer.stage),
             transfer.sources_per_part, transfer.parameters_hash, transfer.seed,
             transfer.engine_version, transfer.similarity, transfer.complete,
             FormatNow(), transfer.enough)
+      .BindTextOrNull(transfer.cut_of)
       .Run();
   WriteTransferNotes(database, transfer);
+}
+
+// A transfer that was cut gives way to the next one of the same inputs.
+void DeleteCutTransfers(Database& database, const StoredTransfer& transfer) {
+  database.Prepare("DELETE FROM transfers WHERE cut_of = ?")
+      .Bind(transfer.cut_of.empty() ? transfer.id : transfer.cut_of)
+      .Run();
 }
 
 void InsertContactMaps(Database& database, const StoredTransfer& transfer) {
@@ -162,7 +170,8 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
     Statement row = database.Prepare(
         "SELECT t.id, t.object_id, t.example_id, t.category, t.hand, t.stage,"
         " t.sources_per_part, p.json, t.parameters_hash, t.seed,"
-        " t.engine_version, t.similarity, t.complete, t.created_at, t.enough"
+        " t.engine_version, t.similarity, t.complete, t.created_at, t.enough,"
+        " t.cut_of"
         " FROM transfers t JOIN parameter_sets p"
         " ON p.hash = t.parameters_hash WHERE t.id = ?");
     if (!row.Bind(id).Step()) return transfer;
@@ -182,6 +191,7 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
     transfer->complete = row.Int(12) != 0;
     transfer->created_at = row.Text(13);
     if (!row.IsNull(14)) transfer->enough = static_cast<int>(row.Int(14));
+    transfer->cut_of = row.Text(15);
   }
   ReadTransferNotes(database, *transfer);
   ReadContactMaps(database, *transfer);
@@ -195,6 +205,7 @@ Result<StoredTransfer> Store::InsertTransfer(
     const StoredTransfer& transfer, const std::vector<StoredGrasp>& grasps) {
   return impl_->Write([&](Database& database) {
     if (auto known = ReadTransfer(database, transfer.id)) return *known;
+    DeleteCutTransfers(database, transfer);
     InsertTransferRow(database, transfer);
     for (const StoredGrasp& grasp : grasps) InsertGrasp(database, grasp);
     InsertContactMaps(database, transfer);

@@ -848,8 +848,8 @@ def test_a_full_queue_is_a_503(binary, contract, world, server, tmp_path):
 ENDLESS = json.dumps({"replan": {"grip_copies": 1000, "climb_samples": 1000000}})
 
 
-def test_a_deadline_cuts_a_transfer_which_says_so(contract, world):
-    query = transfer_query(seed=16, sources=40, deadline=3, parameters=ENDLESS)
+def test_a_deadline_cuts_a_transfer_which_says_so(contract, world, answer):
+    query = transfer_query(seed=16, sources=40, deadline=10, parameters=ENDLESS)
     cut = contract.call("postGrasps", 200, query=query, body=world["novel_bytes"])
     assert cut["complete"] is False
     assert any("deadline" in warning for warning in cut["warnings"])
@@ -857,6 +857,9 @@ def test_a_deadline_cuts_a_transfer_which_says_so(contract, world):
     assert stored["complete"] is False
     again = contract.call("postGrasps", 200, query=query, body=world["novel_bytes"])
     assert again["transfer_id"] != cut["transfer_id"]
+    # Of the same inputs only the last one stays.
+    contract.call("getTransfer", 404, path={"id": cut["transfer_id"]})
+    contract.call("getTransfer", 200, path={"id": again["transfer_id"]})
 
 
 def test_other_jobs_fail_at_their_deadline(contract, world):
@@ -886,11 +889,11 @@ def test_segmenting_again_can_be_left_to_a_job(contract, world):
 
 
 def test_a_simulator_judges_stored_grasps(contract, world, answer):
-    wanted = {"transfer": answer["transfer_id"], "stage": "assembly", "limit": 1}
+    wanted = {"transfer": answer["transfer_id"], "stage": "assembly"}
     judged = contract.call("postVerification", 200, body=wanted,
                            headers={"Prefer": "wait=150"})["items"]
     verdicts = [grasp["quality"]["physical"] for grasp in judged]
-    assert sum(verdict is not None for verdict in verdicts) == 1, verdicts
+    assert verdicts and None not in verdicts, verdicts
     held = contract.call("queryGrasps", 200, query={
         "transfer": answer["transfer_id"], "verified": "physical"})["items"]
     assert len(held) == verdicts.count(1.0)
@@ -905,7 +908,7 @@ def test_a_simulator_judges_stored_grasps(contract, world, answer):
 @pytest.mark.parametrize("body, status", [
     ({"category": "spoon"}, 404), ({"transfer": UNKNOWN_HASH}, 404),
     ({"category": "mug", "parts": ["lid"]}, 404), ({"stage": "held"}, 400),
-    ({"limit": -1}, 400), ({"unknown": 1}, 400)])
+    ({"limit": 0}, 400), ({"parts": ["body"] * 65}, 400), ({"unknown": 1}, 400)])
 def test_an_unusable_verification_order_is_refused(contract, world, body, status):
     contract.call("postVerification", status, body=body)
 
@@ -1068,8 +1071,9 @@ HOSTILE = {
 }
 JSON_OPERATIONS = [("postCategory", {}), ("patchCategory", {"name": "mug"}),
                    ("postSegmentation", "example"),
-                   ("postGraspSpaces", "example"), ("patchPart", "part")]
-BODY_IS_OPTIONAL = ("postSegmentation", "postGraspSpaces")
+                   ("postGraspSpaces", "example"), ("patchPart", "part"),
+                   ("postVerification", {})]
+BODY_IS_OPTIONAL = ("postSegmentation", "postGraspSpaces", "postVerification")
 HOSTILE_CASES = [(operation, path, name) for operation, path in JSON_OPERATIONS
                  for name in HOSTILE
                  if name != "empty" or operation not in BODY_IS_OPTIONAL]

@@ -1,12 +1,13 @@
 """64 clients at once: queries, uploads and transfers mixed. Nothing is answered but
 what was asked for, or 429 or 503 with Retry-After; memory and sockets do not
-grow. Seconds are GRASPDB_LOAD_SECONDS (default 8); latencies are told, not judged."""
+grow. Event streams keep nobody waiting. Seconds are GRASPDB_LOAD_SECONDS (default 8); latencies are told, not judged."""
 
 import collections
 import os
 import pathlib
 import random
 import re
+import socket
 import threading
 import time
 
@@ -20,6 +21,9 @@ from live_server import LiveServer
 CLIENTS = 64
 SECONDS = float(os.environ.get("GRASPDB_LOAD_SECONDS", "8"))
 QUEUE = 20  # Jobs that may wait.
+THREADS = 128
+STREAMS = 500 if SECONDS > 60 else 80
+QUERIES = 2000 if SECONDS > 60 else 100
 MOST_GROWTH = 96 << 20  # Bytes, after the first third.
 
 
@@ -43,7 +47,7 @@ def busy(binary, copy_database, tmp_path_factory):
     database = folder / "load.db"
     copy_database(database)
     server = LiveServer(binary, database, folder, "--max-queued-jobs", str(QUEUE),
-                        "--http-threads", "128")
+                        "--http-threads", str(THREADS))
     yield server
     assert server.alive(), server.log()
     assert server.stop() == 0, server.log()
@@ -140,3 +144,45 @@ def test_sixty_four_clients_get_what_they_ask_for_or_are_told_to_wait(busy):
         time.sleep(0.5)
     assert read_process(busy.process.pid)[1] == 1
     assert requests.get(busy.url + "/healthz", timeout=5).status_code == 200
+
+
+def open_stream(server, path):
+    """A connection that has asked for events, and the status it was answered."""
+    connection = socket.create_connection(("127.0.0.1", server.port), timeout=30)
+    connection.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+    head = b""
+    while b"\r\n\r\n" not in head:
+        piece = connection.recv(4096)
+        assert piece, head
+        head += piece
+    status = int(head.split()[1])
+    assert status == 200 or b"\r\nRetry-After:" in head, head
+    return connection, status
+
+
+def time_queries(server, count):
+    """Seconds of each of so many queries."""
+    session = requests.Session()
+    seconds = []
+    for _ in range(count):
+        start = time.monotonic()
+        answer = session.get(server.url + "/v1/grasps?category=mug&limit=20", timeout=30)
+        seconds.append(time.monotonic() - start)
+        assert answer.status_code == 200, answer.text
+    return seconds
+
+
+def test_event_streams_do_not_keep_others_waiting(busy):
+    job = requests.post(busy.url + "/v1/verifications?deadline=120", json={"category": "mug"},
+                        headers={"Prefer": "respond-async"}, timeout=20).json()
+    alone = time_queries(busy, QUERIES)
+    streams = [open_stream(busy, f"/v1/jobs/{job['id']}/events") for _ in range(STREAMS)]
+    beside = time_queries(busy, QUERIES)
+    answers = collections.Counter(status for _, status in streams)
+    # Half of the threads are left to others, and all get an answer.
+    assert answers == {200: THREADS // 2, 503: STREAMS - THREADS // 2}, answers
+    for connection, _ in streams:
+        connection.close()
+    requests.delete(f"{busy.url}/v1/jobs/{job['id']}", timeout=20)
+    print(f"\n{STREAMS} streams; queries alone p99 {1e3 * numpy.quantile(alone, .99):.1f} ms, "
+          f"beside them {1e3 * numpy.quantile(beside, .99):.1f} ms")

@@ -34,7 +34,7 @@ async function readJson<Body>(response: Promise<Response>): Promise<Body> {
 
 const getJson = <Body>(path: string): Promise<Body> => readJson<Body>(send(path));
 
-// Of what becomes a job only the end is of interest.
+// Of what becomes a job only its end is of interest, however long that takes.
 const sendJson = <Body>(method: string, path: string, body: unknown): Promise<Body> =>
   readJson<Body>(
     send(path, {

@@ -258,6 +258,43 @@ TEST_F(GripperPipeline, TheDeadlineLeavesWhatWasFoundAndMarksTheRest) {
   }
 }
 
+TEST_F(GripperPipeline, TheDeadlineLeavesWhatTheFirstRoundFound) {
+  TransferRequest request = MakeRequest(box_E_, LearnedBox(), 1);
+  request.parameters.transfer.sure_grip = 1.1;  // Never.
+  request.parameters.replan.quick_climb_samples = 0;
+  request.parameters.replan.climb_samples = 5;
+  request.enough = 1;
+  int told = 0;
+  ExecutionContext context;
+  request.on_record = [&](int, const TransferRecord&) {
+    if (++told == kSources) {
+      context.set_deadline(ExecutionContext::Clock::time_point{});
+    }
+  };
+  const auto cut = Transfer(request, context).value();
+  EXPECT_FALSE(cut.complete);
+  EXPECT_EQ(told, kSources);
+  int assembled = 0;
+  for (const TransferRecord& record : cut.records) {
+    EXPECT_FALSE(record.cut);
+    assembled += record.assembled ? 1 : 0;
+  }
+  EXPECT_GT(assembled, 0);
+}
+
+TEST_F(GripperPipeline, ATransferThatHasEnoughIsCompleteThoughTimeIsUp) {
+  TransferRequest request = MakeRequest(box_E_, LearnedBox(), 1);
+  request.parameters.transfer.sure_grip = 0.0;
+  request.enough = 1;
+  ExecutionContext context;
+  request.on_record = [&](int, const TransferRecord& record) {
+    if (record.assembled) {
+      context.set_deadline(ExecutionContext::Clock::time_point{});
+    }
+  };
+  EXPECT_TRUE(Transfer(request, context).value().complete);
+}
+
 TEST_F(GripperPipeline, CancellingEndsATransferWithAnError) {
   TransferRequest request = MakeRequest(box_E_, LearnedBox(), 1);
   ExecutionContext context;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/planning/grasp_evaluator.h"
+#include "engine/planning/perturbed_copies.h"
 #include "engine/transfer/open_close.h"
 #include "tests/support/workshop.h"
 
@@ -38,6 +40,40 @@ TEST_F(GripperTask, ReplansOntoABoxThatIsNotQuiteThere) {
   ASSERT_EQ(result.outcome, TransferOutcome::kSucceeded);
   EXPECT_TRUE(IsTransferOf(task_, *result.grasp, parameters_.transfer));
   EXPECT_GE(result.grasp->quality.epsilon, parameters_.contact.stable_epsilon);
+}
+
+TEST_F(GripperTask, AStartThatHoldsIsAnAnswerWithoutAnySearch) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const EvaluatedGrasp closed =
+      CloseAndJudge(hand_, task_.X_NH, task_.q_pregrasp, box, parameters_);
+  ASSERT_TRUE(closed.ok());
+  for (const Contact& contact : closed.grasp.contacts) {
+    task_.targets[static_cast<size_t>(contact.link - 1)].p_N = contact.p_O;
+  }
+  Parameters unsearched = parameters_;
+  unsearched.replan.iterations = 0;
+  for (const int searches : {1, 3}) {
+    const ReplanResult result =
+        Replan(hand_, task_, box, unsearched, 3, {.searches = searches});
+    EXPECT_EQ(result.outcome, TransferOutcome::kSucceeded);
+  }
+}
+
+TEST_F(GripperTask, MoreSearchesFindNoWorseAGraspAndOneThatIsLikelyEndsThem) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const auto share_of = [&](const ReplanResult& result) {
+    return CalcRobustness(hand_, *result.grasp, box, parameters_, 3,
+                          {.copies = parameters_.replan.grip_copies})
+        .gripped;
+  };
+  const auto one = Replan(hand_, task_, box, parameters_, 3, {.searches = 1});
+  const auto more = Replan(hand_, task_, box, parameters_, 3, {.searches = 3});
+  ASSERT_TRUE(one.grasp && more.grasp);
+  EXPECT_GE(share_of(more), share_of(one));
+  Parameters content = parameters_;
+  content.replan.likely_grip = 0.0;
+  const auto ended = Replan(hand_, task_, box, content, 3, {.searches = 3});
+  EXPECT_EQ(*ended.grasp, *one.grasp);
 }
 
 TEST_F(GripperTask, TheFittedWristBringsContactsNearerToTheirTargets) {

@@ -168,6 +168,54 @@ TEST(Orders, ComeBackFromTheJobsTableWithoutTheirBytes) {
             ToJson(import));
 }
 
+TEST(Orders, OfSegmentingAndVerifyingAreStoredWhole) {
+  SegmentOrder segment;
+  segment.object_id = "o";
+  segment.category = "mug";
+  segment.settings = R"({"samples":500})";
+  segment.face_labels = {"body", "handle"};
+  segment.seed = 7;
+  segment.cascade = true;
+  const SegmentOrder read = StoredSegmentOrderFromJson(ToJson(segment)).value();
+  EXPECT_EQ(read.object_id, "o");
+  EXPECT_EQ(read.category, "mug");
+  EXPECT_EQ(read.settings, segment.settings);
+  EXPECT_EQ(read.face_labels, segment.face_labels);
+  EXPECT_EQ(read.seed, 7u);
+  EXPECT_TRUE(read.cascade);
+
+  VerifyOrder verify;
+  verify.query.category = "mug";
+  verify.query.part_labels = {"body"};
+  verify.query.hand = "claw";
+  verify.query.object_id = "o";
+  verify.query.grasp_space_id = "g";
+  verify.query.transfer_id = "t";
+  verify.query.stage = GraspStage::kLearned;
+  verify.limit = 5;
+  verify.again = true;
+  const VerifyOrder back = VerifyOrderFromJson(ToJson(verify)).value();
+  EXPECT_EQ(ToJson(back), ToJson(verify));
+  EXPECT_EQ(back.query.part_labels, verify.query.part_labels);
+  EXPECT_EQ(back.query.stage, GraspStage::kLearned);
+  EXPECT_EQ(back.limit, 5);
+  EXPECT_TRUE(back.again);
+  EXPECT_EQ(VerifyOrderFromJson("{}").value().limit, 1000);
+}
+
+TEST(Orders, ShortTextCannotAskForMuch) {
+  EXPECT_EQ(
+      SegmentOrderFromJson(R"({"faces":{"x":[[0,1000001]]}})").error().field,
+      "faces.x");
+  const std::string label(65, 'x');
+  EXPECT_FALSE(
+      SegmentOrderFromJson(R"({"faces":{")" + label + R"(":[[0,1]]}})"));
+  std::string parts = "\"body\"";
+  for (int i = 0; i < 64; ++i) parts += ",\"body\"";
+  EXPECT_EQ(VerifyOrderFromJson(R"({"parts":[)" + parts + "]}").error().field,
+            "parts");
+}
+
 TEST(Orders, BodiesOfRequestsAreChecked) {
   EXPECT_EQ(PartLabelFromJson(R"({"label":"handle"})").value(), "handle");
   EXPECT_EQ(PartLabelFromJson(R"({"label":""})").error().field, "label");

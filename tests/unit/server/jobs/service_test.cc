@@ -641,7 +641,9 @@ TEST_F(ServiceTest, ATransferThatItsDeadlineCutAnswersNoOtherRequest) {
   EXPECT_TRUE(whole.complete);
   EXPECT_THAT(whole.attempts, SizeIs(8));
   EXPECT_NE(whole.id, cut.id);
-  EXPECT_TRUE(service->store().FindTransfer(cut.id));
+  EXPECT_EQ(whole.id, cut.cut_of);
+  // Of the same inputs only the whole one stays.
+  EXPECT_FALSE(service->store().FindTransfer(cut.id));
 
   // In time it is the same as without.
   ExecutionContext patient;
@@ -657,8 +659,14 @@ TEST_F(ServiceTest, AJobThatMissesItsDeadlineFailsAndStoresNothing) {
   const auto queued = service->SubmitLearn(lesson, {.deadline = 0.1}).value();
   EXPECT_TRUE(queued.deadline);
   std::this_thread::sleep_for(milliseconds(100));
+  // Nobody works on it: who waits is told all the same.
+  const auto missed = service->WaitForJob(queued.id, kLongEnough).value();
+  ASSERT_EQ(missed.state, JobState::kFailed);
+  EXPECT_EQ(missed.error.value().code, ErrorCode::kDeadlineExceeded);
+
   ASSERT_TRUE(service->StartWorkers());
-  const auto done = service->WaitForJob(queued.id, kLongEnough).value();
+  const auto begun = service->SubmitLearn(lesson, {.deadline = 0.5}).value();
+  const auto done = service->WaitForJob(begun.id, kLongEnough).value();
   ASSERT_EQ(done.state, JobState::kFailed);
   EXPECT_EQ(done.error.value().code, ErrorCode::kDeadlineExceeded);
   EXPECT_EQ(service->store().Count().value().grasp_spaces, 0);
@@ -677,11 +685,22 @@ TEST_F(ServiceTest, SegmentingAgainIsAJob) {
   const auto done = service->WaitForJob(queued.id, kLongEnough).value();
   ASSERT_EQ(done.state, JobState::kSucceeded);
   EXPECT_EQ(done.result_id, object.id);
-  order.face_labels = {"body"};
+  const auto segmented = service->store().FindObject(object.id).value();
+  EXPECT_EQ(segmented.segmentation.method, "transfer");
+  order.face_labels.assign(static_cast<size_t>(object.num_triangles), "body");
+  const auto labelled = service->SubmitSegment(order).value();
+  ASSERT_EQ(service->WaitForJob(labelled.id, kLongEnough).value().state,
+            JobState::kSucceeded);
+  EXPECT_THAT(service->store().ListParts(object.id).value(), SizeIs(1));
+  order.face_labels[0] = "lid";
   const auto wrong = service->SubmitSegment(order).value();
   const auto failed = service->WaitForJob(wrong.id, kLongEnough).value();
   ASSERT_EQ(failed.state, JobState::kFailed);
   EXPECT_EQ(failed.error.value().field, "face_labels");
+  order.face_labels = {"body"};
+  EXPECT_EQ(service->SubmitSegment(order).error().field, "face_labels");
+  order.category = "cup";
+  EXPECT_EQ(service->SubmitSegment(order).error().code, ErrorCode::kNotFound);
   order.object_id = "x";
   EXPECT_EQ(service->SubmitSegment(order).error().code, ErrorCode::kNotFound);
 }

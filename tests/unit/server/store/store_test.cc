@@ -514,6 +514,9 @@ TEST_F(StoreTest, JobsWithTheSameIdempotencyKeyAreOne) {
   EXPECT_EQ(
       store_->InsertJob(JobKind::kLearn, true, "[]", "", {"k"}).error().code,
       ErrorCode::kKeyReused);
+  EXPECT_EQ(
+      store_->InsertJob(JobKind::kLearn, true, "{}", "m", {"k"}).error().code,
+      ErrorCode::kKeyReused);
 }
 
 TEST_F(StoreTest, NoMoreJobsAreQueuedThanAllowed) {
