@@ -10,7 +10,8 @@
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/cspace/active_learner.h"
-#include "engine/hand/hand_model.h"
+#include "engine/geometry/solid.h"
+#include "engine/hand/hand_shape.h"
 #include "engine/parameters/parameters.h"
 #include "engine/planning/grasp.h"
 #include "engine/segmentation/part.h"
@@ -40,7 +41,7 @@ struct GraspSpace {
 };
 
 struct LearnRequest {
-  std::shared_ptr<const HandModel> hand;
+  std::shared_ptr<const HandShape> hand;
   Part part_E;
   LabelledMesh whole_E;  ///< The object that the part was cut from.
   Parameters parameters;
@@ -94,11 +95,11 @@ struct PartAlignment {
 using RecordCallback = std::function<void(int, const TransferRecord&)>;
 
 struct TransferRequest {
-  std::shared_ptr<const HandModel> hand;
-  LabelledMesh example;             ///< Whole example object, frame E.
-  LabelledMesh novel;               ///< Whole novel object, frame N.
-  std::vector<Part> example_parts;  ///< Those of `example`.
-  std::vector<Part> novel_parts;    ///< Those of `novel`.
+  std::shared_ptr<const HandShape> hand;
+  std::shared_ptr<const Solid> whole_E;  ///< Whole example object, frame E.
+  LabelledMesh novel;                    ///< Whole novel object, frame N.
+  std::vector<Part> example_parts;       ///< Those of `whole_E`.
+  std::vector<Part> novel_parts;         ///< Those of `novel`.
   /** What a point cloud shows of `novel`; null: it came as a mesh. */
   std::shared_ptr<const SeenSurface> seen_N;
   RigidTransform X_NE;  ///< Whole-object alignment, from segmentation …

@@ -108,10 +108,12 @@ struct GraspQuery {
   PageRequest page;
 };
 
+inline constexpr int kMostVerified = 10'000;
+
 /** POST /v1/verifications: which stored grasps a simulator judges. */
 struct VerifyOrder {
   GraspQuery query;   ///< Which; its page is of no account.
-  int limit{0};       ///< Most grasps, best first; 0: all.
+  int limit{0};       ///< Most grasps, best first; 0: all, not as a job.
   bool again{false};  ///< Those as well that have a verdict.
 };
 

@@ -165,6 +165,13 @@ const char* ToString(SegmentationVerdict verdict) {
   return "";
 }
 
+Error MakeTimedOut() {
+  return {ErrorCode::kDeadlineExceeded,
+          "The deadline passed before the work was done.",
+          "allow more time with deadline; GET /v1/jobs tells what else waits",
+          "deadline"};
+}
+
 Result<ErrorCode> ParseErrorCode(const std::string& text) {
   return Parse(text, "code",
                std::array{ErrorCode::kInvalidArgument,

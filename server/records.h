@@ -271,7 +271,8 @@ struct StoredTransfer {
   std::string engine_version;
   double similarity{0.0};  ///< Of object and example, 0..1.
   bool complete{true};     ///< False when the deadline cut it.
-  std::string cut_of;      ///< The id it then would have had; empty otherwise.
+  /** Of the transfer of the same inputs that tries all sources to an end. */
+  std::string inputs_id;
   /** Sources were tried until so many grasps were sure; unset: all were. */
   std::optional<int> enough;
   std::vector<StoredAttempt> attempts;
@@ -320,10 +321,16 @@ struct StoredJob {
   std::string started_at;   ///< Empty until then.
   std::string finished_at;  ///< Empty until then.
 
+  bool Overdue(int64_t now) const {
+    return state == JobState::kQueued && deadline && now >= *deadline;
+  }
   bool Finished() const {
     return state != JobState::kQueued && state != JobState::kRunning;
   }
 };
+
+/** kDeadlineExceeded. */
+Error MakeTimedOut();
 
 /** What was once answered to a request with an Idempotency-Key. */
 struct StoredReply {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -66,6 +67,11 @@ class DistanceField {
   double max_error() const { return max_error_; }
 
   double cell_size() const { return cell_; }
+
+  /** What its values take. */
+  int64_t bytes() const {
+    return static_cast<int64_t>(values_.size() * sizeof(float));
+  }
 
  private:
   friend class PosedField;

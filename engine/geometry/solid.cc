@@ -28,4 +28,10 @@ Solid::Solid(TriangleMesh mesh_O, int num_surface_faces,
   GRASPDB_EXPECTS(num_surface_faces_ <= mesh_O_.num_triangles());
 }
 
+int64_t Solid::CalcBytes() const {
+  // Triangles, and what the index and FCL keep of each.
+  constexpr int64_t kBytesPerTriangle = 600;
+  return field_.bytes() + kBytesPerTriangle * mesh_O_.num_triangles();
+}
+
 }  // namespace graspdb

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "engine/geometry/collision_shape.h"
@@ -27,6 +28,8 @@ class Solid {
   const CollisionShape& shape() const { return shape_; }
   const MassProperties& mass() const { return mass_; }
   bool is_cap(int face) const { return face >= num_surface_faces_; }
+  /** About what it takes, for whoever keeps many. */
+  int64_t CalcBytes() const;
   bool is_seen(const Eigen::Vector3d& p_O) const {
     return seen_ == nullptr || seen_->Shows(p_O);
   }

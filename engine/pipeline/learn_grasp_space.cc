@@ -20,7 +20,7 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
                                 ExecutionContext& context) {
   const Parameters& parameters = request.parameters;
   context.ReportProgress("preparing", 0.0);
-  const HandShape hand(request.hand);
+  const HandShape& hand = *request.hand;
   const Solid part(request.part_E.solid_O, request.part_E.num_surface_faces);
   std::optional<Solid> whole;
   if (parameters.swarm.hold_on_whole) whole.emplace(request.whole_E.mesh_O);
@@ -56,7 +56,7 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
   result.curve = std::move(learned.rounds);
   for (const HandPosture& posture : learned.free_support_vectors) {
     result.support_vectors.push_back(
-        {posture.X_OH, request.hand->CalcCoupledJoints(posture.actuators)});
+        {posture.X_OH, hand.model().CalcCoupledJoints(posture.actuators)});
   }
   result.configurations_tried = found.configurations_tried;
   result.coverage = found.coverage;

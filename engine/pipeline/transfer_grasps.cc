@@ -52,7 +52,7 @@ class Transferrer {
       : request_(request),
         parameters_(request.parameters),
         context_(context),
-        hand_(request.hand),
+        hand_(*request.hand),
         parts_N_(request.novel) {}
 
   Result<TransferResult> Run() {
@@ -85,15 +85,13 @@ class Transferrer {
     const int count = static_cast<int>(request_.novel_parts.size());
     pairs_.resize(count);
     result.alignments.resize(count);
-    ParallelFor(count + 2, [&](int task) {
+    ParallelFor(count + 1, [&](int task) {
       if (task == 0) {
-        whole_E_ = std::make_unique<Solid>(request_.example.mesh_O);
-      } else if (task == 1) {
         if (request_.assemble) {
           whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O, -1,
                                              request_.seen_N);
         }
-      } else if (const int p = task - 2; request_.grasp_spaces[p]) {
+      } else if (const int p = task - 1; request_.grasp_spaces[p]) {
         PreparePart(p, result.alignments[p]);
       }
     });
@@ -303,10 +301,10 @@ class Transferrer {
     const PartPair& pair = pairs_[p];
     const Grasp& source = request_.grasp_spaces[p]->grasps[s];
     record.example_epsilon = source.quality.epsilon;
-    record.example_epsilon_whole =
-        std::max(0.0, CloseAndJudge(hand_, source.configuration.X_OH,
-                                    source.q_pregrasp, *whole_E_, parameters_)
-                          .grasp.quality.epsilon);
+    record.example_epsilon_whole = std::max(
+        0.0, CloseAndJudge(hand_, source.configuration.X_OH, source.q_pregrasp,
+                           *request_.whole_E, parameters_)
+                 .grasp.quality.epsilon);
     if (!pair.map) return;
 
     // Sec. V-A: where its contacts lie on the novel part.
@@ -420,8 +418,7 @@ class Transferrer {
   const TransferRequest& request_;
   const Parameters& parameters_;
   ExecutionContext& context_;
-  const HandShape hand_;
-  std::unique_ptr<Solid> whole_E_;
+  const HandShape& hand_;
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
   const PartSurfaces parts_N_;

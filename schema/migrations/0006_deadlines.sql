@@ -34,6 +34,6 @@ DROP TABLE jobs;
 ALTER TABLE jobs_6 RENAME TO jobs;
 CREATE INDEX jobs_by_state ON jobs (state, slow, id);
 
--- A transfer that its deadline cut: the id it would have had as a whole.
-ALTER TABLE transfers ADD COLUMN cut_of TEXT;
-CREATE INDEX transfers_by_cut ON transfers (cut_of) WHERE cut_of IS NOT NULL;
+-- The id of the transfer of the same inputs that tries all sources to an end.
+ALTER TABLE transfers ADD COLUMN inputs_id TEXT;
+CREATE INDEX transfers_by_inputs ON transfers (inputs_id);

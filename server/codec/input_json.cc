@@ -115,10 +115,18 @@ std::vector<CategoryExample> ReadExamples(JsonFields& fields,
 
 // ---- Labels -----------------------------------------------------------------
 
-// No mesh has more faces, no part a longer label.
-constexpr uint64_t kMostFaces = 1'000'000;
-constexpr size_t kMostLabelBytes = 64;
+// No mesh has more faces.
+constexpr uint64_t kMostFaces = 400'000;
 constexpr size_t kMostParts = 64;
+
+// As a part's label must be: what is repeated per face is not to be long.
+bool IsLabel(const std::string& text) {
+  return !text.empty() && text.size() <= 64 &&
+         std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                  c == '_' || c == '-';
+         });
+}
 
 // {"body": [[0, 10]], ...}: half-open ranges that together cover all faces.
 Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
@@ -132,7 +140,7 @@ Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
   if (!faces.is_object()) return Invalid(takes, "faces");
   std::vector<Range> ranges;
   for (const auto& [label, list] : faces.items()) {
-    if (label.size() > kMostLabelBytes) return Invalid(takes, "faces");
+    if (!IsLabel(label)) return Invalid(takes, "faces");
     if (!list.is_array()) return Invalid(takes, "faces." + label);
     for (const Json& range : list) {
       const bool sound = range.is_array() && range.size() == 2 &&
@@ -436,7 +444,7 @@ Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
     }
   }
   order.limit = 1000;
-  fields.ReadInteger("limit", order.limit, 1, 10'000);
+  fields.ReadInteger("limit", order.limit, 1, kMostVerified);
   fields.Read("again", order.again);
   GRASPDB_TRY_VOID(fields.Finish());
   return order;

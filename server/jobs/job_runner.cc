@@ -77,13 +77,6 @@ void JobRunner::Notify() {
 
 Result<StoredJob> JobRunner::Find(const std::string& id) const {
   GRASPDB_TRY(job, service_.store().FindJob(id));
-  // Nobody waits for a turn that comes too late.
-  if (job.state == JobState::kQueued && job.deadline &&
-      CalcUnixMilliseconds() > *job.deadline) {
-    job.state = JobState::kFailed;
-    job.error = MakeTimedOut();
-    return service_.store().FinishJob(job);
-  }
   AddLiveState(job);
   return job;
 }
@@ -132,6 +125,11 @@ Result<StoredJob> JobRunner::Cancel(const std::string& id) {
   return cancelled;
 }
 
+JobRunner::Clock::time_point JobRunner::ToClock(int64_t unix_milliseconds) {
+  return Clock::now() +
+         std::chrono::milliseconds(unix_milliseconds - CalcUnixMilliseconds());
+}
+
 void JobRunner::Work(bool slow) {
   LowerThreadPriority();
   StartHelperThreads(service_.options().threads);
@@ -168,11 +166,7 @@ void JobRunner::Run(StoredJob job) {
         }
         Notify();
       });
-  if (job.deadline) {
-    context->set_deadline(
-        Clock::now() +
-        std::chrono::milliseconds(*job.deadline - CalcUnixMilliseconds()));
-  }
+  if (job.deadline) context->set_deadline(ToClock(*job.deadline));
   {
     const std::lock_guard lock(mutex_);
     live_[id] = {"", 0.0, Clock::now(), context, false};

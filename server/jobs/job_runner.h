@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -37,7 +38,6 @@ class JobRunner {
   /** There is a new job. */
   void Wake();
 
-  /** One that missed its deadline while it was queued fails by it. */
   Result<StoredJob> Find(const std::string& id) const;
   /** Adds progress, stage and eta to a job that runs here. */
   void AddLiveState(StoredJob& job) const;
@@ -63,6 +63,8 @@ class JobRunner {
     std::vector<LiveGrasp> grasps{};
   };
 
+  // @param unix_milliseconds  A job's deadline.
+  static Clock::time_point ToClock(int64_t unix_milliseconds);
   void Work(bool slow);
   void Run(StoredJob job);
   // The id of what the job made.
@@ -98,8 +100,12 @@ Result<StoredJob> JobRunner::WaitUntil(const std::string& id,
     }
     GRASPDB_TRY(job, Find(id));
     if (job.Finished() || enough(job) || Clock::now() >= deadline) return job;
+    auto wake = deadline;
+    if (job.state == JobState::kQueued && job.deadline) {
+      wake = std::min(wake, ToClock(*job.deadline));
+    }
     std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, deadline, [&] { return changes_ != seen; });
+    changed_.wait_until(lock, wake, [&] { return changes_ != seen; });
   }
 }
 

@@ -112,7 +112,7 @@ Result<std::vector<StoredGraspSpace>> Service::LearnObject(
       spaces.push_back(*known);
       continue;
     }
-    GRASPDB_TRY(hand, FindHandModel(lesson.hand));
+    GRASPDB_TRY(hand, FindHandShape(lesson.hand));
     SubContext part_context(
         context,
         fmt::format("learn {} with {}", lesson.part.label, lesson.hand),

@@ -113,14 +113,6 @@ Result<void> CheckHandMeshes(const HandFiles& files) {
 
 }  // namespace
 
-Error MakeTimedOut() {
-  return {ErrorCode::kDeadlineExceeded,
-          "The deadline passed before the work was done.",
-          "allow more time with deadline, under a new Idempotency-Key if any; "
-          "GET /v1/jobs tells what else waits",
-          "deadline"};
-}
-
 Service::Service(std::unique_ptr<Store> store, std::unique_ptr<Decoder> decoder,
                  const ServiceOptions& options)
     : store_(std::move(store)),
@@ -195,6 +187,30 @@ Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
   GRASPDB_TRY(model, BuildHand(hand, *decoder_));
   const std::lock_guard lock(hands_mutex_);
   return hands_.emplace(name, model).first->second;
+}
+
+Result<std::shared_ptr<const HandShape>> Service::FindHandShape(
+    const std::string& name) const {
+  {
+    const std::lock_guard lock(hands_mutex_);
+    if (const auto known = hand_shapes_.find(name);
+        known != hand_shapes_.end()) {
+      return known->second;
+    }
+  }
+  GRASPDB_TRY(model, FindHandModel(name));
+  auto shape = std::make_shared<const HandShape>(model);
+  const std::lock_guard lock(hands_mutex_);
+  return hand_shapes_.emplace(name, std::move(shape)).first->second;
+}
+
+Result<std::shared_ptr<const Solid>> Service::FindWholeSolid(
+    const std::string& id) {
+  if (auto known = whole_solids_.Find(id)) return *std::move(known);
+  GRASPDB_TRY(meshes, store_->ReadObjectMeshes(id));
+  auto solid = std::make_shared<const Solid>(std::move(meshes.work));
+  whole_solids_.Insert(id, solid, solid->CalcBytes());
+  return std::shared_ptr<const Solid>(std::move(solid));
 }
 
 Result<void> Service::CheckQuery(const GraspQuery& query) const {
@@ -304,6 +320,11 @@ Result<StoredJob> Service::SubmitSegment(const SegmentOrder& order,
 
 Result<StoredJob> Service::SubmitVerify(const VerifyOrder& order,
                                         const JobTerms& terms) {
+  if (order.limit < 1 || order.limit > kMostVerified) {
+    return Error{ErrorCode::kInvalidArgument,
+                 fmt::format("limit must lie in 1..{}.", kMostVerified), "",
+                 "limit"};
+  }
   GRASPDB_TRY_VOID(CheckQuery(order.query));
   return Submit(JobKind::kVerify, true, ToJson(order), "", terms);
 }

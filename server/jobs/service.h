@@ -19,6 +19,7 @@
 #include "server/files.h"
 #include "server/jobs/backup_folder.h"
 #include "server/jobs/live_grasp.h"
+#include "server/lru_cache.h"
 #include "server/orders.h"
 #include "server/records.h"
 #include "server/store/store.h"
@@ -78,9 +79,6 @@ struct VerifiedGrasp {
   PhysicalVerdict verdict;
 };
 
-/** kDeadlineExceeded. */
-Error MakeTimedOut();
-
 using GraspCallback = std::function<void(const StoredGrasp&)>;
 
 /** The verbs of the application, without HTTP: what the server's routes and the
@@ -120,6 +118,9 @@ class Service {
   /** The built hand, shared by all callers. */
   Result<std::shared_ptr<const HandModel>> FindHandModel(
       const std::string& name) const;
+  /** The same with its links' search structures, shared, too. */
+  Result<std::shared_ptr<const HandShape>> FindHandShape(
+      const std::string& name) const;
 
   /** Decodes, segments and stores a mesh. Idempotent in (bytes, units, role,
    category). An object of no category is stored without parts. An example
@@ -145,9 +146,9 @@ class Service {
                                                     ExecutionContext& context);
   /** Maps, replans, assembles, stores; a transfer with the same inputs is
    answered from the store. One that the context's deadline cuts is stored with
-   what it found, under ids of its own, until there is another of these inputs:
-   it answers no other request.
-   @retval kDeadlineExceeded when it passed before the search began.
+   what it found, under ids of its own, until one of the same inputs finds more:
+   it answers no request without a deadline.
+   @retval kDeadlineExceeded when it passed before anything was found.
    @param on_grasp  Hears of each grasp of the stage asked for as it is found,
      before it is stored: from the computing threads, one at a time. */
   Result<TransferAnswer> TransferGrasps(const TransferOrder& order,
@@ -214,8 +215,11 @@ class Service {
 
  private:
   friend class JobRunner;
+  static constexpr int64_t kMostSolidBytes = 64 << 20;
 
   Result<DecodedMesh> DecodeUpload(const ImportOrder& order) const;
+  // Of a whole object's working mesh.
+  Result<std::shared_ptr<const Solid>> FindWholeSolid(const std::string& id);
   Result<ShapeDescriptor> FindDescriptor(const std::string& id) const;
   // With the defaults filled in.
   Result<ImportOrder> CheckImport(const ImportOrder& order) const;
@@ -238,6 +242,9 @@ class Service {
   ServiceOptions options_;
   mutable std::mutex hands_mutex_;
   mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;
+  mutable std::map<std::string, std::shared_ptr<const HandShape>> hand_shapes_;
+  // An object's mesh never changes.
+  LruCache<std::shared_ptr<const Solid>> whole_solids_{kMostSolidBytes};
   mutable std::mutex descriptors_mutex_;
   mutable std::map<std::string, ShapeDescriptor> descriptors_;  // By object.
   std::mutex keys_mutex_;

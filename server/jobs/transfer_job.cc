@@ -56,22 +56,18 @@ StoredTransfer DescribeTransferRow(const TransferOrder& order,
   return row;
 }
 
-LabelledMesh TakeWorkMesh(ObjectMeshes& meshes) {
-  return LabelledMesh{std::move(meshes.work), std::move(meshes.work_labels)};
-}
-
 Result<TransferRequest> MakeRequest(const Store& store,
                                     const TransferOrder& order,
                                     const TransferPlan& plan,
-                                    std::shared_ptr<const HandModel> hand,
+                                    std::shared_ptr<const HandShape> hand,
+                                    std::shared_ptr<const Solid> whole_E,
                                     int threads) {
   TransferRequest request;
   request.hand = std::move(hand);
-  GRASPDB_TRY(example, store.ReadObjectMeshes(plan.alignment.example_id));
   GRASPDB_TRY(novel, store.ReadObjectMeshes(plan.novel.id));
   GRASPDB_TRY(example_parts, store.ReadSolids(plan.alignment.example_id));
   GRASPDB_TRY(novel_parts, store.ReadSolids(plan.novel.id));
-  request.example = TakeWorkMesh(example);
+  request.whole_E = std::move(whole_E);
   // The parts are of the working mesh, what is checked last is the object.
   request.novel = {std::move(novel.canonical),
                    std::move(novel.canonical_labels)};
@@ -345,9 +341,12 @@ Result<TransferAnswer> Service::FindOrMakeTransfer(
   GRASPDB_TRY(plan, MakeTransferPlan(*store_, checked, novel, context));
   // One that tried all sources answers any count.
   StoredTransfer row = DescribeTransferRow(checked, plan, std::nullopt);
+  row.inputs_id = row.id;
   bool known = store_->FindTransfer(row.id).has_value();
   if (!known && order.count && !order.exhaustive) {
+    const std::string inputs_id = row.id;
     row = DescribeTransferRow(checked, plan, order.count);
+    row.inputs_id = inputs_id;
     known = store_->FindTransfer(row.id).has_value();
   }
   if (known) {
@@ -356,9 +355,10 @@ Result<TransferAnswer> Service::FindOrMakeTransfer(
   }
   row.seconds.emplace_back("import", CalcSecondsSince(start));
 
-  GRASPDB_TRY(hand, FindHandModel(order.hand));
-  GRASPDB_TRY(request,
-              MakeRequest(*store_, checked, plan, hand, options_.threads));
+  GRASPDB_TRY(hand, FindHandShape(order.hand));
+  GRASPDB_TRY(whole_E, FindWholeSolid(plan.alignment.example_id));
+  GRASPDB_TRY(request, MakeRequest(*store_, checked, plan, hand, whole_E,
+                                   options_.threads));
   request.enough = row.enough;
   RowMaker rows(plan, request, row);
   if (on_grasp) {
@@ -378,8 +378,13 @@ Result<TransferAnswer> Service::FindOrMakeTransfer(
                  "send the request again"};
   }
   if (!result.complete) {
+    const bool found =
+        std::any_of(result.records.begin(), result.records.end(),
+                    [](const TransferRecord& record) {
+                      return record.transferred || record.assembled;
+                    });
+    if (!found) return MakeTimedOut();
     row.complete = false;
-    row.cut_of = row.id;
     row.id = MakeContentId("cut transfer " + MakeUuid());
     row.warnings.push_back(
         "the deadline ended the search: these are the grasps found until then");

@@ -277,17 +277,24 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
   return AnswerJob(
       service, request, options.default_wait, job, idempotency,
       [&](const StoredJob& done) -> Result<HttpResponse> {
-        GRASPDB_TRY(answer,
-                    service.DescribeTransfer(done.result_id, order.count));
+        const auto answer =
+            service.DescribeTransfer(done.result_id, order.count);
+        if (!answer && answer.error().code == ErrorCode::kNotFound) {
+          return Error{ErrorCode::kConflict,
+                       "What this request led to has gone since: it was "
+                       "deleted, or one of the same inputs found more.",
+                       "send it again, under a new Idempotency-Key if any"};
+        }
+        if (!answer) return answer.error();
         HttpResponse response;
         if (format == GraspFormat::kJson) {
-          response = MakeJsonResponse(200, ToJson(answer));
+          response = MakeJsonResponse(200, ToJson(*answer));
         } else {
-          GRASPDB_TRY(pairs, PairWithHands(service, answer.grasps));
+          GRASPDB_TRY(pairs, PairWithHands(service, answer->grasps));
           GRASPDB_TRY(written, MakeGraspsResponse(service, pairs, format));
           response = std::move(written);
         }
-        for (const auto& [stage, seconds] : answer.transfer.seconds) {
+        for (const auto& [stage, seconds] : answer->transfer.seconds) {
           response.timings.emplace_back(stage, seconds * 1e3);
         }
         return response;

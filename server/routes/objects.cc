@@ -182,6 +182,7 @@ Result<HttpResponse> PostSegmentation(Service& service,
   const bool cascade = query.Boolean("cascade").value_or(false);
   const auto deadline = ReadDeadline(query);
   GRASPDB_TRY_VOID(query.Finish());
+  GRASPDB_TRY_VOID(Check(service.store().FindObject(Id(request))));
   GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
   order.cascade = cascade;

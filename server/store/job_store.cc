@@ -75,12 +75,25 @@ bool CarriesPayload(Database& database, const std::string& id,
   return row.Bind(id, payload_sha256).Step();
 }
 
-// Those that may still be done.
+// Queued jobs whose turn would come too late fail, and give back their keys:
+// who sends the request again means it.
+void FailOverdueJobs(Database& database) {
+  const Error error = MakeTimedOut();
+  database
+      .Prepare(
+          "UPDATE jobs SET state = 'failed', error_code = ?,"
+          " error_message = ?, error_hint = ?, error_field = ?,"
+          " finished_at = ?, idempotency_key = NULL, payload = NULL"
+          " WHERE state = 'queued' AND deadline <= ?")
+      .Bind(ToString(error.code), error.message, error.hint, error.field,
+            FormatNow(), CalcUnixMilliseconds())
+      .Run();
+}
+
 int64_t CountQueued(Database& database, bool slow) {
   Statement row = database.Prepare(
-      "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?"
-      " AND (deadline IS NULL OR deadline > ?)");
-  row.Bind(slow, CalcUnixMilliseconds()).Step();
+      "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?");
+  row.Bind(slow).Step();
   return row.Int(0);
 }
 
@@ -92,6 +105,7 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
                                    const JobTerms& terms, int64_t max_queued) {
   const std::string payload_sha256 = CalcSha256(payload);
   return impl_->Write([&](Database& database) {
+    FailOverdueJobs(database);
     if (auto known = FindJobByKey(database, terms.idempotency_key)) {
       if (known->kind != kind || known->request != request ||
           !CarriesPayload(database, known->id, payload_sha256)) {
@@ -126,7 +140,18 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
 }
 
 Result<StoredJob> Store::FindJob(const std::string& id) const {
-  return impl_->Read([&](Database& database) { return ReadJob(database, id); });
+  auto job =
+      impl_->Read([&](Database& database) { return ReadJob(database, id); });
+  if (!job || !job->Overdue(CalcUnixMilliseconds())) return job;
+  auto failed = impl_->Write([&](Database& database) {
+    FailOverdueJobs(database);
+    return ReadJob(database, id);
+  });
+  if (failed) return failed;
+  // Told all the same when it cannot be written.
+  job->state = JobState::kFailed;
+  job->error = MakeTimedOut();
+  return job;
 }
 
 Result<Page<StoredJob>> Store::ListJobs(std::optional<JobState> state,
@@ -176,6 +201,7 @@ Result<std::optional<StoredJob>> Store::ClaimJob(bool slow) {
   if (!queued) return queued.error();
   if (queued->empty()) return std::optional<StoredJob>();
   return impl_->Write([&](Database& database) -> std::optional<StoredJob> {
+    FailOverdueJobs(database);
     const std::string id = FindQueued(database, slow);
     if (id.empty()) return std::nullopt;
     database
@@ -194,7 +220,8 @@ Result<StoredJob> Store::FinishJob(const StoredJob& job) {
     Statement update = database.Prepare(
         "UPDATE jobs SET state = ?, progress = ?, stage = ?, result_id = ?,"
         " error_code = ?, error_message = ?, error_hint = ?, error_field = ?,"
-        " finished_at = ?, payload = NULL"
+        " finished_at = ?, payload = NULL, idempotency_key ="
+        " CASE WHEN ? THEN NULL ELSE idempotency_key END"
         " WHERE id = ? AND state IN ('queued', 'running')");
     update.Bind(ToString(job.state), job.progress, job.stage)
         .BindTextOrNull(job.result_id);
@@ -204,7 +231,9 @@ Result<StoredJob> Store::FinishJob(const StoredJob& job) {
     } else {
       for (int i = 0; i < 4; ++i) update.BindTextOrNull("");
     }
-    update.Bind(FormatNow(), job.id).Run();
+    const bool missed =
+        job.error && job.error->code == ErrorCode::kDeadlineExceeded;
+    update.Bind(FormatNow(), missed, job.id).Run();
     return ReadJob(database, job.id);
   });
 }

@@ -153,8 +153,9 @@ class Store {
 
   // ---- Transfers ------------------------------------------------------------
   /** Stores a transfer with its grasps (their ids are used as given). One with
-   the same id is kept and answered instead; one of the same inputs that was cut
-   goes. */
+   the same id is kept and answered instead. Of those of the same inputs that
+   were cut only the one with the most grasps stays, until one is whole; it, or
+   the whole one, is answered instead of a lesser one. */
   Result<StoredTransfer> InsertTransfer(const StoredTransfer& transfer,
                                         const std::vector<StoredGrasp>& grasps);
   Result<StoredTransfer> FindTransfer(const std::string& id) const;
@@ -166,6 +167,7 @@ class Store {
   /** @param slow  It takes minutes: kept apart from what someone waits for.
    @param payload  The bytes of a mesh, say; kept until the job ends.
    @param max_queued  Of the slow ones, or of the others.
+   A job that missed its deadline gives its key back.
    @retval kKeyReused if the key's job asked for something else or carries
      another payload.
    @retval kOverloaded when as many are queued. */
@@ -173,6 +175,7 @@ class Store {
       JobKind kind, bool slow, const std::string& request,
       const std::string& payload, const JobTerms& terms,
       int64_t max_queued = std::numeric_limits<int64_t>::max());
+  /** One whose deadline passed while it was queued has failed. */
   Result<StoredJob> FindJob(const std::string& id) const;
   /** Newest first. */
   Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,

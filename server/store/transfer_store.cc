@@ -72,15 +72,27 @@ void InsertTransferRow(Database& database, const StoredTransfer& transfer) {
             transfer.sources_per_part, transfer.parameters_hash, transfer.seed,
             transfer.engine_version, transfer.similarity, transfer.complete,
             FormatNow(), transfer.enough)
-      .BindTextOrNull(transfer.cut_of)
+      .BindTextOrNull(transfer.inputs_id)
       .Run();
   WriteTransferNotes(database, transfer);
 }
 
-// A transfer that was cut gives way to the next one of the same inputs.
+// The id of a transfer that makes one that was cut needless: the whole one of
+// the same inputs, or one that was cut and has as many grasps; empty if none.
+std::string FindBetter(Database& database, const StoredTransfer& transfer,
+                       int64_t num_grasps) {
+  Statement row = database.Prepare(
+      "SELECT id FROM transfers t WHERE id = ?1 OR (inputs_id = ?1"
+      " AND complete = 0 AND ?2 <= (SELECT count(*) FROM grasps g"
+      " WHERE g.transfer_id = t.id)) ORDER BY complete DESC LIMIT 1");
+  return row.Bind(transfer.inputs_id, num_grasps).Step() ? row.Text(0)
+                                                         : std::string();
+}
+
+// Those of the same inputs that were cut.
 void DeleteCutTransfers(Database& database, const StoredTransfer& transfer) {
-  database.Prepare("DELETE FROM transfers WHERE cut_of = ?")
-      .Bind(transfer.cut_of.empty() ? transfer.id : transfer.cut_of)
+  database.Prepare("DELETE FROM transfers WHERE inputs_id = ? AND complete = 0")
+      .Bind(transfer.inputs_id)
       .Run();
 }
 
@@ -171,7 +183,7 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
         "SELECT t.id, t.object_id, t.example_id, t.category, t.hand, t.stage,"
         " t.sources_per_part, p.json, t.parameters_hash, t.seed,"
         " t.engine_version, t.similarity, t.complete, t.created_at, t.enough,"
-        " t.cut_of"
+        " t.inputs_id"
         " FROM transfers t JOIN parameter_sets p"
         " ON p.hash = t.parameters_hash WHERE t.id = ?");
     if (!row.Bind(id).Step()) return transfer;
@@ -191,7 +203,7 @@ std::optional<StoredTransfer> ReadTransfer(Database& database,
     transfer->complete = row.Int(12) != 0;
     transfer->created_at = row.Text(13);
     if (!row.IsNull(14)) transfer->enough = static_cast<int>(row.Int(14));
-    transfer->cut_of = row.Text(15);
+    transfer->inputs_id = row.Text(15);
   }
   ReadTransferNotes(database, *transfer);
   ReadContactMaps(database, *transfer);
@@ -205,6 +217,11 @@ Result<StoredTransfer> Store::InsertTransfer(
     const StoredTransfer& transfer, const std::vector<StoredGrasp>& grasps) {
   return impl_->Write([&](Database& database) {
     if (auto known = ReadTransfer(database, transfer.id)) return *known;
+    if (!transfer.complete) {
+      const std::string better =
+          FindBetter(database, transfer, std::ssize(grasps));
+      if (!better.empty()) return *ReadTransfer(database, better);
+    }
     DeleteCutTransfers(database, transfer);
     InsertTransferRow(database, transfer);
     for (const StoredGrasp& grasp : grasps) InsertGrasp(database, grasp);

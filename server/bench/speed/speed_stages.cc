@@ -210,9 +210,9 @@ class StageBench {
   Result<void> MeasureTransfer() {
     GRASPDB_TRY(pair, MakePair());
     TransferRequest request;
-    GRASPDB_TRY(hand, service_.FindHandModel(kDefaultHand));
+    GRASPDB_TRY(hand, service_.FindHandShape(kDefaultHand));
     request.hand = hand;
-    request.example = pair.example;
+    request.whole_E = std::make_shared<const Solid>(pair.example.mesh_O);
     request.novel = pair.novel;
     request.example_parts = pair.example_parts;
     request.novel_parts = pair.segmented.parts;

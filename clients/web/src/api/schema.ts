@@ -1467,7 +1467,7 @@ export interface components {
         readonly UuidPath: components["schemas"]["Uuid"];
         readonly ContentIdPath: components["schemas"]["ContentId"];
         readonly NamePath: string;
-        /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+        /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
         readonly Deadline: number;
         /**
          * @description RFC 7240: wait=N waits up to N seconds (at most 600) for the job to end, respond-async does not wait.
@@ -1737,7 +1737,7 @@ export interface operations {
                 readonly parameters?: string;
                 /** @description How grasps are written: csv, one line each; ros, a list of moveit_msgs/Grasp; graspit, a world of GraspIt! 4 with a robot per grasp (one hand only) and the object as models/objects/{id}.xml, whose mesh, in millimetres there, comes from /v1/objects/{id}/mesh. */
                 readonly as?: components["parameters"]["As"];
-                /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+                /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
                 readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
@@ -2077,7 +2077,7 @@ export interface operations {
                 readonly learn?: boolean;
                 /** @description Of every random choice. */
                 readonly seed?: components["parameters"]["Seed"];
-                /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+                /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
                 readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
@@ -2316,7 +2316,7 @@ export interface operations {
             readonly query?: {
                 /** @description Whether grasps that depend on it go too; otherwise they are a 409. */
                 readonly cascade?: components["parameters"]["Cascade"];
-                /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+                /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
                 readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
@@ -2370,7 +2370,7 @@ export interface operations {
     readonly postGraspSpaces: {
         readonly parameters: {
             readonly query?: {
-                /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+                /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
                 readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {
@@ -2758,7 +2758,7 @@ export interface operations {
     readonly postVerification: {
         readonly parameters: {
             readonly query?: {
-                /** @description How long the job may take, waiting for its turn included. A transfer that has begun to search then answers what it has found, with complete false and under ids of its own, until there is another of the same inputs. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
+                /** @description How long the job may take, waiting for its turn included. A transfer that has found something then answers it, with complete false; of such transfers of the same inputs the one with the most grasps stays, and is the answer, until there is a whole one. Any other job fails with deadline_exceeded; what it has finished by then (a grasp space, the verdicts on an object) stays. */
                 readonly deadline?: components["parameters"]["Deadline"];
             };
             readonly header?: {

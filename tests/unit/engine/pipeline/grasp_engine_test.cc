@@ -77,7 +77,7 @@ class GripperPipeline : public ::testing::Test {
                               const GraspSpace& space, int threads) const {
     TransferRequest request;
     request.hand = gripper_;
-    request.example = Label(whole_E);
+    request.whole_E = std::make_shared<const Solid>(whole_E);
     request.novel = Label(box_N_);
     request.example_parts = {MakePart(box_E_)};
     request.novel_parts = {MakePart(box_N_)};
@@ -89,8 +89,8 @@ class GripperPipeline : public ::testing::Test {
     return request;
   }
 
-  const std::shared_ptr<const HandModel> gripper_ =
-      workshop::MakeTwoJawGripper();
+  const std::shared_ptr<const HandShape> gripper_ =
+      std::make_shared<const HandShape>(workshop::MakeTwoJawGripper());
   const TriangleMesh box_E_ = workshop::MakeBox({0.04, 0.03, 0.08}, 8);
   const TriangleMesh box_N_ = workshop::MakeBox({0.042, 0.033, 0.084}, 8);
 };
@@ -101,7 +101,7 @@ TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
   ASSERT_EQ(space.curve.size(), 2u);
   const TransferResult result = TransferBox(space, 2);
   EXPECT_TRUE(result.complete);
-  const HandShape hand(gripper_);
+  const HandShape& hand = *gripper_;
   const Solid novel(box_N_);
   int assembled = 0;
   for (const TransferRecord& record : result.records) {
@@ -115,7 +115,8 @@ TEST_F(GripperPipeline, LearnsAndTransfersMostGrasps) {
     EXPECT_EQ(
         FindCollidingLink(
             hand, record.assembled->configuration.X_OH,
-            CalcLinkPoses(*gripper_, record.assembled->configuration.q), novel),
+            CalcLinkPoses(gripper_->model(), record.assembled->configuration.q),
+            novel),
         -1);
     for (const Contact& contact : record.assembled->contacts) {
       EXPECT_LE(contact.gap, 0.0005);

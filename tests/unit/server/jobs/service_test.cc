@@ -623,25 +623,36 @@ TEST_F(ServiceTest, ACancelledJobStopsSoonAndStoresNothing) {
 
 TEST_F(ServiceTest, ATransferThatItsDeadlineCutAnswersNoOtherRequest) {
   const auto service = MakeService(Copy("learned"));
-  ExecutionContext hasty([&](const std::string& stage, double) {
-    if (stage.find("transferring") != std::string::npos) {
-      hasty.set_deadline(ExecutionContext::Clock::time_point{});
-    }
-  });
+  ExecutionContext hasty;
   TransferOrder order = MakeOrder();
   order.sources = 8;
   // One thread, so that nobody reads the deadline while it is set.
   const auto alone = MakeService(service->store().path(), 1);
-  const auto cut = alone->TransferGrasps(order, hasty).value().transfer;
+  const auto cut =
+      alone
+          ->TransferGrasps(
+              order, hasty,
+              [&](const StoredGrasp&) {
+                hasty.set_deadline(ExecutionContext::Clock::time_point{});
+              })
+          .value()
+          .transfer;
   EXPECT_FALSE(cut.complete);
   EXPECT_THAT(cut.warnings, Contains(HasSubstr("deadline")));
   EXPECT_LT(cut.attempts.size(), 8u);
+
+  // Nothing at all in no time.
+  ExecutionContext late;
+  late.set_deadline(ExecutionContext::Clock::time_point{});
+  EXPECT_EQ(service->TransferGrasps(order, late).error().code,
+            ErrorCode::kDeadlineExceeded);
+  EXPECT_TRUE(service->store().FindTransfer(cut.id));
 
   const auto whole = service->TransferGrasps(order, context_).value().transfer;
   EXPECT_TRUE(whole.complete);
   EXPECT_THAT(whole.attempts, SizeIs(8));
   EXPECT_NE(whole.id, cut.id);
-  EXPECT_EQ(whole.id, cut.cut_of);
+  EXPECT_EQ(whole.id, cut.inputs_id);
   // Of the same inputs only the whole one stays.
   EXPECT_FALSE(service->store().FindTransfer(cut.id));
 
@@ -658,7 +669,6 @@ TEST_F(ServiceTest, AJobThatMissesItsDeadlineFailsAndStoresNothing) {
   lesson.object_id = FindExample(*service);
   const auto queued = service->SubmitLearn(lesson, {.deadline = 0.1}).value();
   EXPECT_TRUE(queued.deadline);
-  std::this_thread::sleep_for(milliseconds(100));
   // Nobody works on it: who waits is told all the same.
   const auto missed = service->WaitForJob(queued.id, kLongEnough).value();
   ASSERT_EQ(missed.state, JobState::kFailed);

@@ -1,5 +1,6 @@
 #include "server/store/store.h"
 
+#include <chrono>
 #include <set>
 #include <thread>
 
@@ -318,6 +319,42 @@ TEST_F(StoreTest, ATransferIsStoredOnce) {
   EXPECT_EQ(store_->Count().value().grasps, 9 + 5);
 }
 
+TEST_F(StoreTest, OfTransfersThatWereCutTheOneWithTheMostGraspsStays) {
+  const StoredGraspSpace space =
+      AddSpace(AddObject("e", ObjectRole::kExample), 1, 5, 9);
+  const StoredObject novel = AddObject("n", ObjectRole::kNovel);
+  const auto add = [&](const std::string& id, int num_sources, bool complete) {
+    auto sources = GraspsOf(space);
+    std::erase_if(sources, [](const StoredGrasp& grasp) {
+      return grasp.stage != GraspStage::kLearned;
+    });
+    sources.resize(static_cast<size_t>(num_sources));
+    NewTransfer made =
+        MakeNewTransfer(space, sources, store_->ListParts(novel.id).value()[1]);
+    made.record.inputs_id = MakeContentId("all sources");
+    made.record.id = MakeContentId(id);
+    made.record.complete = complete;
+    for (size_t i = 0; i < made.grasps.size(); ++i) {
+      made.grasps[i].id = MakeContentId(id + std::to_string(i));
+      made.grasps[i].transfer_id = made.record.id;
+    }
+    made.record.attempts.clear();
+    made.record.contact_maps.clear();
+    const auto stored = store_->InsertTransfer(made.record, made.grasps);
+    return stored ? stored->id : stored.error().message;
+  };
+  const std::string first = add("first", 4, false);
+  EXPECT_EQ(add("lesser", 2, false), first);
+  EXPECT_EQ(add("as many", 4, false), first);
+  const std::string more = add("more", 6, false);
+  EXPECT_EQ(more, MakeContentId("more"));
+  EXPECT_FALSE(store_->FindTransfer(first));
+  const std::string whole = add("all sources", 2, true);
+  EXPECT_FALSE(store_->FindTransfer(more));
+  EXPECT_EQ(add("late", 9, false), whole);
+  EXPECT_EQ(store_->Count().value().transfers, 1);
+}
+
 // The oracle: all grasps, filtered and sorted in memory.
 TEST_F(StoreTest, QueriesGiveEveryMatchingGraspOnceInOrderOnPages) {
   const StoredObject example = AddObject("e", ObjectRole::kExample);
@@ -530,6 +567,22 @@ TEST_F(StoreTest, NoMoreJobsAreQueuedThanAllowed) {
   EXPECT_TRUE(insert(false, ""));      // … and this waits in another queue.
   store_->ClaimJob(true).value();
   EXPECT_TRUE(insert(true, ""));
+}
+
+TEST_F(StoreTest, AJobThatIsOverdueFailsAndGivesPlaceAndKeyBack) {
+  const auto insert = [&](double deadline) {
+    return store_->InsertJob(JobKind::kLearn, true, "{}", "payload",
+                             {"key", deadline}, 1);
+  };
+  const std::string first = insert(0.001).value().id;
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const std::string second = insert(1e3).value().id;
+  EXPECT_NE(second, first);
+  const StoredJob missed = store_->FindJob(first).value();
+  EXPECT_EQ(missed.state, JobState::kFailed);
+  EXPECT_EQ(missed.error.value().code, ErrorCode::kDeadlineExceeded);
+  EXPECT_EQ(store_->ReadJobPayload(first).value(), "");
+  EXPECT_EQ(store_->ClaimJob(true).value()->id, second);
 }
 
 TEST_F(StoreTest, JobsAreListedNewestFirst) {
