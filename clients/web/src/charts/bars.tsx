@@ -10,7 +10,7 @@ interface BarsProps {
   readonly series: readonly (SeriesKey & { readonly counts: readonly number[] })[];
 }
 
-const NAME_ROOM = 150; // px
+const NAME_ROOM = 172; // px, for "whole: no correspondence"
 const BAR_SHARE = 0.62;
 const THICKEST = 30; // px
 /** Beyond the longest bar stands its count. */
