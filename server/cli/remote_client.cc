@@ -6,7 +6,6 @@
 #include "engine/admission/mesh_format.h"
 #include "engine/admission/text_scanner.h"
 #include "server/cli/backend.h"
-#include "server/codec/input_json.h"
 #include "server/codec/json.h"
 #include "server/codec/parameters_json.h"
 #include "server/http/target.h"

@@ -1,7 +1,6 @@
 #include "server/codec/input_json.h"
 
 #include <algorithm>
-#include <climits>
 
 #include "server/codec/json.h"
 #include "server/codec/parameters_json.h"
@@ -117,7 +116,6 @@ std::vector<CategoryExample> ReadExamples(JsonFields& fields,
 
 // No mesh has more faces.
 constexpr uint64_t kMostFaces = 400'000;
-constexpr size_t kMostParts = 64;
 
 // As a part's label must be: what is repeated per face is not to be long.
 bool IsLabel(const std::string& text) {
@@ -162,21 +160,6 @@ Result<std::vector<std::string>> ExpandRanges(const Json& faces) {
                      "faces." + range.label);
     }
     labels.resize(static_cast<size_t>(range.end), range.label);
-  }
-  return labels;
-}
-
-// Reads labels given either way; none when neither is there.
-std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
-  std::vector<std::string> labels;
-  fields.Read("face_labels", labels);
-  if (const Json* faces = fields.Find("faces")) {
-    auto expanded = ExpandRanges(*faces);
-    if (expanded) {
-      labels = std::move(*expanded);
-    } else {
-      fields.Fail(expanded.error());
-    }
   }
   return labels;
 }
@@ -266,79 +249,6 @@ void ReadGraspit(JsonFields& fields, std::optional<GraspitModel>& graspit) {
   if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
 }
 
-// ---- Orders -----------------------------------------------------------------
-
-void ReadParameters(JsonFields& fields, Parameters& parameters) {
-  const Json* json = fields.Find("parameters");
-  if (json == nullptr) return;
-  auto read = ParametersFromJson(DumpJson(*json), parameters);
-  if (read) {
-    parameters = *read;
-  } else {
-    Error error = read.error();
-    error.field = fields.PathOf("parameters") + "." + error.field;
-    fields.Fail(error);
-  }
-}
-
-Json Encode(const ImportOrder& order) {
-  Json json;
-  json["file_name"] = order.file_name;
-  json["format"] = order.format;
-  json["units"] = order.units;
-  json["role"] = ToString(order.role);
-  json["category"] = order.category;
-  json["name"] = order.name;
-  json["face_labels"] = order.face_labels;
-  json["seed"] = order.seed;
-  json["learn"] = order.learn;
-  return json;
-}
-
-ImportOrder ReadImportOrder(JsonFields& fields) {
-  ImportOrder order;
-  std::string role = ToString(order.role);
-  fields.Read("file_name", order.file_name);
-  fields.Read("format", order.format);
-  fields.Read("units", order.units);
-  fields.Read("role", role);
-  fields.Read("category", order.category);
-  fields.Read("name", order.name);
-  fields.Read("face_labels", order.face_labels);
-  fields.ReadSeed("seed", order.seed);
-  fields.Read("learn", order.learn);
-  const auto parsed = ParseObjectRole(role);
-  if (parsed) {
-    order.role = *parsed;
-  } else {
-    fields.Fail(parsed.error());
-  }
-  return order;
-}
-
-SegmentOrder ReadSegmentOrder(JsonFields& fields) {
-  SegmentOrder order;
-  fields.Read("category", order.category);
-  fields.ReadSeed("seed", order.seed);
-  order.face_labels = ReadFaceLabels(fields);
-  if (const Json* settings = fields.Find("settings")) {
-    order.settings = DumpJson(*settings);
-    const auto read =
-        SegmentationFromJson(order.settings, SegmentationParameters());
-    if (!read) fields.Fail(read.error());
-  }
-  return order;
-}
-
-LearnOrder ReadLearnOrder(JsonFields& fields) {
-  LearnOrder order;
-  fields.Read("parts", order.part_labels);
-  fields.Read("hands", order.hands);
-  ReadParameters(fields, order.parameters);
-  fields.ReadSeed("seed", order.seed);
-  return order;
-}
-
 }  // namespace
 
 Result<StoredCategory> CategoryFromJson(const std::string& text) {
@@ -375,6 +285,20 @@ Result<CategoryFile> CategoryFileFromJson(const std::string& text) {
   return file;
 }
 
+std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
+  std::vector<std::string> labels;
+  fields.Read("face_labels", labels);
+  if (const Json* faces = fields.Find("faces")) {
+    auto expanded = ExpandRanges(*faces);
+    if (expanded) {
+      labels = std::move(*expanded);
+    } else {
+      fields.Fail(expanded.error());
+    }
+  }
+  return labels;
+}
+
 Result<std::vector<std::string>> FaceLabelsFromJson(const std::string& text) {
   GRASPDB_TRY(json, ParseJson(text, kFileLimits));
   JsonFields fields(json, "");
@@ -409,169 +333,6 @@ Result<std::string> PartLabelFromJson(const std::string& text) {
   fields.RequireText("label", label);
   GRASPDB_TRY_VOID(fields.Finish());
   return label;
-}
-
-Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
-  JsonFields fields(json, "");
-  SegmentOrder order = ReadSegmentOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text));
-  JsonFields fields(json, "");
-  VerifyOrder order;
-  GraspQuery& query = order.query;
-  fields.Read("category", query.category);
-  fields.Read("parts", query.part_labels);
-  if (query.part_labels.size() > kMostParts) {
-    fields.Fail("parts", "at most 64 labels");
-  }
-  fields.Read("hand", query.hand);
-  fields.Read("object", query.object_id);
-  fields.Read("grasp_space", query.grasp_space_id);
-  fields.Read("transfer", query.transfer_id);
-  if (fields.Has("stage")) {
-    std::string stage;
-    fields.RequireText("stage", stage);
-    const auto parsed = ParseGraspStage(stage);
-    if (parsed) {
-      query.stage = *parsed;
-    } else {
-      fields.Fail(parsed.error());
-    }
-  }
-  order.limit = 1000;
-  fields.ReadInteger("limit", order.limit, 1, kMostVerified);
-  fields.Read("again", order.again);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<LearnOrder> LearnOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text));
-  JsonFields fields(json, "");
-  LearnOrder order = ReadLearnOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-std::string ToJson(const ImportOrder& order) { return DumpJson(Encode(order)); }
-
-std::string ToJson(const SegmentOrder& order) {
-  Json json;
-  json["object"] = order.object_id;
-  json["category"] = order.category;
-  if (!order.settings.empty()) json["settings"] = Json::parse(order.settings);
-  json["face_labels"] = order.face_labels;
-  json["seed"] = order.seed;
-  json["cascade"] = order.cascade;
-  return DumpJson(json);
-}
-
-std::string ToJson(const VerifyOrder& order) {
-  const GraspQuery& query = order.query;
-  Json json;
-  json["category"] = query.category;
-  json["parts"] = query.part_labels;
-  json["hand"] = query.hand;
-  json["object"] = query.object_id;
-  json["grasp_space"] = query.grasp_space_id;
-  json["transfer"] = query.transfer_id;
-  if (query.stage) json["stage"] = ToString(*query.stage);
-  json["limit"] = order.limit;
-  json["again"] = order.again;
-  return DumpJson(json);
-}
-
-std::string ToJson(const LearnOrder& order) {
-  Json json;
-  json["object"] = order.object_id;
-  json["parts"] = order.part_labels;
-  json["hands"] = order.hands;
-  json["parameters"] = Json::parse(ParametersToJson(order.parameters));
-  json["seed"] = order.seed;
-  return DumpJson(json);
-}
-
-std::string ToJson(const TransferOrder& order) {
-  Json json;
-  json["mesh"] = Encode(order.mesh);
-  json["object"] = order.object_id;
-  json["category"] = order.category;
-  json["parts"] = order.part_labels;
-  json["task"] = order.task;
-  json["hand"] = order.hand;
-  json["count"] = order.count ? Json(*order.count) : Json(nullptr);
-  json["exhaustive"] = order.exhaustive;
-  json["sources"] = order.sources;
-  json["stage"] = ToString(order.stage);
-  json["parameters"] = Json::parse(ParametersToJson(order.parameters));
-  json["seed"] = order.seed;
-  return DumpJson(json);
-}
-
-Result<ImportOrder> StoredImportOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
-  JsonFields fields(json, "");
-  ImportOrder order = ReadImportOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
-  JsonFields fields(json, "");
-  SegmentOrder order = ReadSegmentOrder(fields);
-  fields.RequireText("object", order.object_id);
-  fields.Read("cascade", order.cascade);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
-  JsonFields fields(json, "");
-  std::string object_id;
-  fields.RequireText("object", object_id);
-  LearnOrder order = ReadLearnOrder(fields);
-  order.object_id = object_id;
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
-  JsonFields fields(json, "");
-  TransferOrder order;
-  if (const Json* mesh = fields.Find("mesh")) {
-    JsonFields inner(*mesh, "mesh");
-    order.mesh = ReadImportOrder(inner);
-    if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
-  }
-  std::string stage = ToString(order.stage);
-  fields.Read("object", order.object_id);
-  fields.Read("category", order.category);
-  fields.Read("parts", order.part_labels);
-  fields.Read("task", order.task);
-  fields.Read("hand", order.hand);
-  if (const Json* count = fields.Find("count");
-      count != nullptr && !count->is_null()) {
-    int number = 0;
-    fields.ReadInteger("count", number, 1, INT_MAX);
-    order.count = number;
-  }
-  fields.Read("exhaustive", order.exhaustive);
-  fields.ReadInteger("sources", order.sources, 1, INT_MAX);
-  fields.Read("stage", stage);
-  ReadParameters(fields, order.parameters);
-  fields.ReadSeed("seed", order.seed);
-  GRASPDB_TRY_VOID(fields.Finish());
-  GRASPDB_TRY(parsed, ParseGraspStage(stage));
-  order.stage = parsed;
-  return order;
 }
 
 }  // namespace graspdb

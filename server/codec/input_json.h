@@ -6,14 +6,16 @@
 
 #include "engine/base/result.h"
 #include "engine/hand/hand_maker.h"
-#include "server/orders.h"
 #include "server/records.h"
 
 /** @file
- What users and data files send as JSON. Every reader answers kInvalidArgument
- with the field at fault and what it takes; unknown fields are refused. */
+ What data files and the catalogue's requests say as JSON. Every reader answers
+ kInvalidArgument with the field at fault and what it takes; unknown fields are
+ refused. */
 
 namespace graspdb {
+
+class JsonFields;
 
 /** POST /v1/categories, and the head of category.json:
  {"name", "title", "parts": [{"label", "tasks": {"use": "note"}}],
@@ -39,6 +41,10 @@ struct CategoryFile {
 };
 Result<CategoryFile> CategoryFileFromJson(const std::string& text);
 
+/** Those that an object has, in either way of FaceLabelsFromJson(); none when
+ there are none. A fault is told to `fields`. */
+std::vector<std::string> ReadFaceLabels(JsonFields& fields);
+
 /** labels.json, {"labels": [...], "faces": {"body": [[0, 1500]], ...}} with
  half-open ranges, or {"face_labels": ["body", ...]}: one label per face.
  @retval kInvalidArgument when ranges overlap or leave a face out. */
@@ -61,30 +67,5 @@ Result<HandFile> HandFileFromJson(const std::string& text);
 
 /** PATCH /v1/parts/{id}: {"label": "handle"}. */
 Result<std::string> PartLabelFromJson(const std::string& text);
-
-/** POST /v1/objects/{id}/segmentation: {"category", "settings": {...},
- "face_labels": [...] or "faces": {...} as in labels.json, "seed"}, all
- optional. object_id and cascade are the caller's. */
-Result<SegmentOrder> SegmentOrderFromJson(const std::string& text);
-
-/** POST /v1/objects/{id}/grasp-spaces: {"parts": [...], "hands": [...],
- "parameters": {...}, "seed"}, all optional; object_id is the caller's. */
-Result<LearnOrder> LearnOrderFromJson(const std::string& text);
-
-/** POST /v1/verifications: {"category", "parts": [...], "hand", "object",
- "grasp_space", "transfer", "stage", "limit", "again"}, all optional; no more
- than 1000 grasps unless limit says. */
-Result<VerifyOrder> VerifyOrderFromJson(const std::string& text);
-
-// Orders in the jobs table, whole but for the bytes of a mesh.
-std::string ToJson(const SegmentOrder& order);
-std::string ToJson(const VerifyOrder& order);  ///< As POST /v1/verifications.
-std::string ToJson(const ImportOrder& order);
-std::string ToJson(const LearnOrder& order);
-std::string ToJson(const TransferOrder& order);
-Result<ImportOrder> StoredImportOrderFromJson(const std::string& text);
-Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text);
-Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text);
-Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text);
 
 }  // namespace graspdb

@@ -4,7 +4,7 @@
 #include <exception>
 #include <set>
 
-#include "server/codec/input_json.h"
+#include "server/codec/order_json.h"
 #include "server/codec/record_json.h"
 #include "server/ids.h"
 #include "server/jobs/low_priority.h"

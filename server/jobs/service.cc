@@ -11,6 +11,7 @@
 #include "engine/hand/hand_maker.h"
 #include "server/codec/input_json.h"
 #include "server/codec/json.h"
+#include "server/codec/order_json.h"
 #include "server/decode/decode_client.h"
 #include "server/files.h"
 #include "server/ids.h"
@@ -214,24 +215,20 @@ Result<std::shared_ptr<const Solid>> Service::FindWholeSolid(
 }
 
 Result<void> Service::CheckQuery(const GraspQuery& query) const {
-  const auto check = [](const auto& found) -> Result<void> {
-    if (!found) return found.error();
-    return {};
-  };
   if (!query.category.empty()) {
-    GRASPDB_TRY_VOID(check(store_->FindCategory(query.category)));
+    GRASPDB_TRY_VOID(store_->FindCategory(query.category));
   }
   if (!query.hand.empty()) {
-    GRASPDB_TRY_VOID(check(FindHandModel(query.hand)));
+    GRASPDB_TRY_VOID(FindHandModel(query.hand));
   }
   if (!query.object_id.empty()) {
-    GRASPDB_TRY_VOID(check(store_->FindObject(query.object_id)));
+    GRASPDB_TRY_VOID(store_->FindObject(query.object_id));
   }
   if (!query.grasp_space_id.empty()) {
-    GRASPDB_TRY_VOID(check(store_->FindGraspSpace(query.grasp_space_id)));
+    GRASPDB_TRY_VOID(store_->FindGraspSpace(query.grasp_space_id));
   }
   if (!query.transfer_id.empty()) {
-    GRASPDB_TRY_VOID(check(store_->FindTransfer(query.transfer_id)));
+    GRASPDB_TRY_VOID(store_->FindTransfer(query.transfer_id));
   }
   return {};
 }

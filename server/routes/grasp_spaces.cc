@@ -17,16 +17,15 @@ Result<HttpResponse> ListGraspSpaces(const Service& service,
   GRASPDB_TRY_VOID(query.Finish());
   const Store& store = service.store();
   if (!filter.category.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindCategory(filter.category)));
+    GRASPDB_TRY_VOID(store.FindCategory(filter.category));
   }
   if (!filter.part_label.empty()) {
     GRASPDB_TRY_VOID(
         CheckPartLabels(store, filter.category, {filter.part_label}));
   }
-  if (!filter.hand.empty())
-    GRASPDB_TRY_VOID(Check(store.FindHand(filter.hand)));
+  if (!filter.hand.empty()) GRASPDB_TRY_VOID(store.FindHand(filter.hand));
   if (!filter.object_id.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindObject(filter.object_id)));
+    GRASPDB_TRY_VOID(store.FindObject(filter.object_id));
   }
   GRASPDB_TRY(found, store.ListGraspSpaces(filter, page));
   return MakeListResponse(

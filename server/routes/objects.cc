@@ -5,6 +5,7 @@
 #include "engine/admission/mesh_reader.h"
 #include "server/codec/input_json.h"
 #include "server/codec/mesh_writer.h"
+#include "server/codec/order_json.h"
 #include "server/codec/record_json.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"
@@ -28,7 +29,7 @@ Result<HttpResponse> ListObjects(const Service& service,
     filter.role = role == "example" ? ObjectRole::kExample : ObjectRole::kNovel;
   }
   if (!filter.category.empty()) {
-    GRASPDB_TRY_VOID(Check(service.store().FindCategory(filter.category)));
+    GRASPDB_TRY_VOID(service.store().FindCategory(filter.category));
   }
   GRASPDB_TRY(found, service.store().ListObjects(filter, page));
   return MakeListResponse(
@@ -182,7 +183,7 @@ Result<HttpResponse> PostSegmentation(Service& service,
   const bool cascade = query.Boolean("cascade").value_or(false);
   const auto deadline = ReadDeadline(query);
   GRASPDB_TRY_VOID(query.Finish());
-  GRASPDB_TRY_VOID(Check(service.store().FindObject(Id(request))));
+  GRASPDB_TRY_VOID(service.store().FindObject(Id(request)));
   GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
   order.object_id = Id(request);
   order.cascade = cascade;

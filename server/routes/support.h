@@ -27,13 +27,6 @@ HttpResponse MakeFileResponse(std::string bytes, const std::string& name,
 /** 400 for an upload without a mesh. */
 Error MakeMissingMesh();
 
-/** Whether a record could be found, without the record. */
-template <class T>
-Result<void> Check(const Result<T>& found) {
-  if (!found) return found.error();
-  return {};
-}
-
 /** The JSON body, {} when there is none. */
 std::string BodyOrEmptyObject(const HttpRequest& request);
 

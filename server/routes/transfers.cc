@@ -15,10 +15,10 @@ Result<HttpResponse> ListTransfers(const Service& service,
   GRASPDB_TRY_VOID(query.Finish());
   const Store& store = service.store();
   if (!filter.category.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindCategory(filter.category)));
+    GRASPDB_TRY_VOID(store.FindCategory(filter.category));
   }
   if (!filter.object_id.empty()) {
-    GRASPDB_TRY_VOID(Check(store.FindObject(filter.object_id)));
+    GRASPDB_TRY_VOID(store.FindObject(filter.object_id));
   }
   GRASPDB_TRY(found, store.ListTransfers(filter, page));
   return MakeListResponse(found, [](const StoredTransfer& transfer) {

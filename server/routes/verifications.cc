@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "server/codec/input_json.h"
+#include "server/codec/order_json.h"
 #include "server/codec/record_json.h"
 #include "server/routes/routes.h"
 #include "server/routes/support.h"

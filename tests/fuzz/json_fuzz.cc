@@ -4,6 +4,7 @@
 #include "engine/parameters/parameters.h"
 #include "server/codec/input_json.h"
 #include "server/codec/json.h"
+#include "server/codec/order_json.h"
 #include "server/codec/parameters_json.h"
 #include "tests/fuzz/fuzz_target.h"
 

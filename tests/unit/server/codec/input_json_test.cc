@@ -1,4 +1,5 @@
 #include "server/codec/input_json.h"
+#include "server/codec/order_json.h"
 
 #include <fstream>
 #include <sstream>

@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 
 #include "server/codec/input_json.h"
+#include "server/codec/order_json.h"
 #include "server/codec/record_json.h"
 #include "server/decode/decode_client.h"
 #include "tests/support/temp_folder.h"
