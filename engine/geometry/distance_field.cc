@@ -1,5 +1,6 @@
 #include "engine/geometry/distance_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -63,22 +64,33 @@ void DistanceField::FillCoarse(const SurfaceIndex& index_M) {
 }
 
 void DistanceField::FillRest(const SurfaceIndex& index_M) {
-  // A point one cell from the surface, its cell's corners, their coarse nodes.
-  const double band = (1.0 + 2.0 * std::sqrt(3.0)) * cell_;
+  // A point one cell from the surface has corners of its cell up to here.
+  const double reach = (1.0 + std::sqrt(3.0)) * cell_;
   ParallelFor(count_[2], [&](int iz) {
     for (int iy = 0; iy < count_[1]; ++iy) {
       for (int ix = 0; ix < count_[0]; ++ix) {
         const std::array<int, 3> odd{ix % kCoarse, iy % kCoarse, iz % kCoarse};
         if (odd == std::array<int, 3>{}) continue;
-        // The nearest coarse node before it, with its distance in cells.
-        const double near = at(ix - odd[0], iy - odd[1], iz - odd[2]);
+        // What the coarse nodes around it, all as far away, leave possible.
         const double apart =
             cell_ * std::sqrt(static_cast<double>(odd[0] + odd[1] + odd[2]));
-        at(ix, iy, iz) =
-            std::abs(near) > band
-                ? static_cast<float>(near - apart)
-                : CalcSigned(index_M, CalcNode(ix, iy, iz),
-                             1.001 * (std::abs(near) + apart) + 1e-9);
+        double most = -std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity();
+        for (const int dz : {-odd[2], odd[2]}) {
+          for (const int dy : {-odd[1], odd[1]}) {
+            for (const int dx : {-odd[0], odd[0]}) {
+              const double near = at(ix + dx, iy + dy, iz + dz);
+              most = std::max(most, near);
+              least = std::min(least, near);
+            }
+          }
+        }
+        const double low = most - apart;
+        const double high = least + apart;
+        at(ix, iy, iz) = low > reach || high < -reach
+                             ? static_cast<float>(low)
+                             : CalcSigned(index_M, CalcNode(ix, iy, iz),
+                                          1.001 * std::max(-low, high) + 1e-9);
       }
     }
   });

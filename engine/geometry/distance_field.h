@@ -36,8 +36,8 @@ class DistanceField {
    p is inside. */
   double Calc(const Eigen::Vector3d& p_M) const;
 
-  /** The slope of Calc() at p, out of the solid, not normalised; zero outside
-   the grid. */
+  /** The slope of Calc() at p: within a cell of the surface straight out of the
+   solid. Not normalised; zero outside the grid. */
   Eigen::Vector3d CalcGradient(const Eigen::Vector3d& p_M) const {
     const Eigen::Vector3d u = (p_M - origin_) * inverse_cell_;
     if (!(u.minCoeff() >= 0.0 && (u.array() <= last_.array()).all())) {

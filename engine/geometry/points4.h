@@ -2,11 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace graspdb {
+#include "engine/math/lanes.h"
 
-/** Four numbers of single precision at once, as every processor has them. */
-using Floats4 = float __attribute__((vector_size(16)));
-using Ints4 = int __attribute__((vector_size(16)));
+namespace graspdb {
 
 /** Four points, m. */
 struct Points4 {

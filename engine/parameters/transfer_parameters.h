@@ -127,7 +127,7 @@ struct ReplanParameters {
   double enough_grip{0.95};
   double behind_cost{0.1};
   int climb_samples{600};
-  int quick_climb_samples{100};
+  int quick_climb_samples{20};
   int searches{3};
   double likely_grip{0.75};
 

@@ -162,6 +162,7 @@ class Transferrer {
   struct Effort {
     int climb_samples;
     int searches;
+    bool until_sure;
 
     bool operator==(const Effort&) const = default;
   };
@@ -171,14 +172,14 @@ class Transferrer {
   void TryAll(TransferResult& result) {
     std::vector<TransferRecord>& records = result.records;
     const ReplanParameters& replan = parameters_.replan;
-    const Effort whole{replan.climb_samples, replan.searches};
+    const Effort whole{replan.climb_samples, replan.searches, false};
     if (!request_.enough) {
       Try(records, MakeOrder(records.size()), whole, false, 1.0, result);
       return;
     }
     SortByPromise(records);
     const Effort quick{
-        std::min(replan.quick_climb_samples, replan.climb_samples), 1};
+        std::min(replan.quick_climb_samples, replan.climb_samples), 1, true};
     const int tried =
         Try(records, MakeOrder(records.size()), quick, false, 0.8, result);
     records.resize(static_cast<size_t>(tried));
@@ -218,8 +219,7 @@ class Transferrer {
         [&](int i, const Wanted& wanted) {
           tried[i].part = records[order[i]].part;
           tried[i].source_grasp = records[order[i]].source_grasp;
-          TransferOne(tried[i], effort,
-                      [&] { return wanted() && !context_.Cancelled(); });
+          TransferOne(tried[i], effort, wanted);
           tried[i].cut = context_.Cancelled();
         },
         [&](int i) {
@@ -293,8 +293,10 @@ class Transferrer {
   }
 
   // One source grasp through all stages; touches its own record only.
+  // @param is_needed  Says no once others are enough.
   void TransferOne(TransferRecord& record, const Effort& effort,
-                   const Wanted& wanted) const {
+                   const Wanted& is_needed) const {
+    const Wanted wanted = [&] { return is_needed() && !context_.Cancelled(); };
     if (!wanted()) return;
     const uint64_t p = record.part;
     const uint64_t s = record.source_grasp;
@@ -332,6 +334,7 @@ class Transferrer {
                {.climb_samples = request_.assemble ? 0 : effort.climb_samples,
                 .searches = request_.assemble ? 1 : effort.searches,
                 .grip = !request_.assemble,
+                .until_sure = effort.until_sure,
                 .epsilon_to_beat = record.open_close_epsilon_part,
                 .wanted = wanted});
     const double replanned = ThreadSeconds();
@@ -356,6 +359,7 @@ class Transferrer {
                    DeriveSeed(request_.seed, {kAssemble, p, s}),
                    {.climb_samples = effort.climb_samples,
                     .searches = effort.searches,
+                    .until_sure = effort.until_sure,
                     .epsilon_to_beat = record.open_close_epsilon_whole,
                     .wanted = wanted});
       record.assembly_seconds = ThreadSeconds() - replanned;
@@ -369,6 +373,7 @@ class Transferrer {
       }
       record.assembled = Complete(*on_whole.grasp, *whole_N_);
     }
+    if (!is_needed()) return;
     const Grasp& last =
         record.assembled ? *record.assembled : *record.transferred;
     const Solid& solid = record.assembled ? *whole_N_ : *pair.solid_N;

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/base/contract.h"
+#include "engine/math/lanes.h"
 
 namespace graspdb {
 namespace {
@@ -28,12 +29,6 @@ Cloud MakeCloud(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals,
 
 // A point's coordinates and half its square.
 using PackedCloud = Eigen::Matrix<float, 7, Eigen::Dynamic>;
-
-// Four or eight numbers side by side: a GCC and Clang extension.
-using Floats4 [[gnu::vector_size(16)]] = float;
-using Ints4 [[gnu::vector_size(16)]] = int;
-using Floats8 [[gnu::vector_size(32)]] = float;
-using Ints8 [[gnu::vector_size(32)]] = int;
 
 // The nearest point p of each query q maximises q·p - |p|²/2. Each of
 // the queries side by side goes through the same operations in the same order,

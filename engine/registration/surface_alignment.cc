@@ -196,11 +196,18 @@ class Aligner {
       for (Candidate& c : candidates) c.residual = CalcDeviation(E, N, c.map);
     }
     SortByResidual(candidates);
-    return Polish(candidates.front().map, kFinalSteps);
+    return Polish(candidates.front().map);
   }
 
-  Candidate Polish(const AffineMap& map, int steps) const {
-    Candidate result = Iterate(E_, N_, map, steps);
+  // From nearby: most of the way on few samples.
+  Candidate Refine(const AffineMap& map) const {
+    return Polish(Iterate(Thin(E_, kMediumSamples), Thin(N_, kMediumSamples),
+                          map, kLocalSteps)
+                      .map);
+  }
+
+  Candidate Polish(const AffineMap& map) const {
+    Candidate result = Iterate(E_, N_, map, kFinalSteps);
     result.residual =
         CalcResidual(Match(E_, N_, result.map), options_.partial_N);
     return result;
@@ -331,8 +338,7 @@ SurfaceAlignment RefineAlignment(const SurfaceSamples& samples_E,
                                  const AlignmentOptions& options) {
   GRASPDB_EXPECTS(std::min(samples_E.size(), samples_N.size()) >= kMinSamples);
   const Aligner aligner(samples_E, samples_N, options);
-  return aligner.ToAlignment(
-      aligner.Polish(aligner.FromAlignment(initial), kLocalSteps));
+  return aligner.ToAlignment(aligner.Refine(aligner.FromAlignment(initial)));
 }
 
 double CalcDissimilarity(const SurfaceAlignment& alignment) {

@@ -12,7 +12,7 @@ SurfaceSamples MapSamples(const SurfaceSamples& samples_E,
 
 /** Bends samples that lie roughly on N's surface until they lie on it: nearest
  neighbours in both directions by position and normal pull at every sample, the
- pulls are smoothed by a Gaussian kernel that narrows from step to step, and
+ pulls are smoothed by a bell-shaped kernel that narrows from step to step, and
  normals turn with the bending. Finds what no affine map can, such as a taper or
  a belly. Deterministic.
  @param samples_E  In frame N already; metres.

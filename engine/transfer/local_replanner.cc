@@ -106,17 +106,20 @@ class Replanner {
   // Of the best start, with nothing looked at closely.
   double RateStarts(const std::vector<RigidTransform>& starts) {
     keeps_ = false;
-    return RankStarts(starts).front().value;
+    return RankStarts(starts, 0).front().value;
   }
 
   ReplanResult Run(const std::vector<RigidTransform>& starts) {
-    const std::vector<Rated> ranked = RankStarts(starts);
+    keeps_ = !options_.until_sure;
+    const std::vector<Rated> ranked = RankStarts(starts, replan_.refits);
+    keeps_ = true;
+    if (options_.until_sure) TryInOrder(ranked);
     const double likely = std::min(replan_.likely_grip, replan_.enough_grip);
     std::optional<Kept> best;
     for (int i = 0; i < options_.searches; ++i) {
       // The first one also knows what the starts hold.
       if (i > 0) best_.reset();
-      Search(ranked);
+      if (!IsContent()) Search(ranked);
       if (best_ && (!best || best_->merit > best->merit)) best = best_;
       if (!best_ || !IsWanted() || !UsesGrip() || best->share >= likely) break;
     }
@@ -126,6 +129,13 @@ class Replanner {
 
  private:
   bool IsWanted() const { return !options_.wanted || options_.wanted(); }
+
+  // Whether what there is will do.
+  bool IsContent() const {
+    if (!options_.until_sure || !best_) return false;
+    return UsesGrip() ? best_->merit.sure >= replan_.enough_grip
+                      : best_->merit.epsilon > options_.epsilon_to_beat;
+  }
 
   struct Sample {
     RigidTransform X_NH;
@@ -167,12 +177,13 @@ class Replanner {
   }
 
   // The best one first; an aimed one draws back where the open hand collides.
-  std::vector<Rated> RankStarts(const std::vector<RigidTransform>& starts) {
+  std::vector<Rated> RankStarts(const std::vector<RigidTransform>& starts,
+                                int refits) {
     std::vector<Rated> ranked;
     for (const RigidTransform& X_NH : starts) {
       Sample sample{X_NH, hand_.model().CalcActuators(task_.q_pregrasp)};
       TransferTask closed = task_;
-      for (int refit = 0; refit <= replan_.refits; ++refit) {
+      for (int refit = 0; refit <= refits; ++refit) {
         if (replan_.aimed_starts) DrawBack(sample);
         ranked.push_back({sample, Evaluate(sample, &closed.q)});
         if (!replan_.aimed_starts) break;
@@ -185,6 +196,14 @@ class Replanner {
         ranked.begin(), ranked.end(),
         [](const Rated& a, const Rated& b) { return a.value < b.value; });
     return ranked;
+  }
+
+  // Looks closely at starts until one will do.
+  void TryInOrder(const std::vector<Rated>& ranked) {
+    for (const Rated& start : ranked) {
+      if (IsContent()) return;
+      Evaluate(start.sample);
+    }
   }
 
   // Against the approach, as far as the transfer's limits allow.
@@ -214,8 +233,8 @@ class Replanner {
     Sample here = start.sample;
     double here_value = start.value;
     int since_gain = 0;
-    for (int i = 0;
-         i < replan_.iterations && since_gain < replan_.patience && IsWanted();
+    for (int i = 0; i < replan_.iterations && since_gain < replan_.patience &&
+                    IsWanted() && !IsContent();
          ++i) {
       const double cooling = static_cast<double>(i) / replan_.iterations;
       const int gains_before = num_gains_;
@@ -243,7 +262,8 @@ class Replanner {
   // long as eps grows.
   void Climb() {
     int since_gain = 0;
-    for (int i = 0; i < options_.climb_samples && IsWanted(); ++i) {
+    for (int i = 0; i < options_.climb_samples && IsWanted() && !IsContent();
+         ++i) {
       if (best_->merit.sure >= replan_.enough_grip &&
           since_gain >= replan_.patience) {
         break;

@@ -51,6 +51,9 @@ struct ReplanOptions {
   int climb_samples{0};
   int searches{1};  ///< … and how often all that, until one is likely to hold.
   bool grip{true};  ///< Whether disturbed copies choose; else ε does.
+  /** Whether the first sure grasp will do: one that beats open-close and of
+   which, if copies choose, enough_grip of them are held. */
+  bool until_sure{false};
   double epsilon_to_beat{0.0};  ///< What open-close reaches.
   /** Whether to go on; may be empty. Once it says no, the result is the best
    so far. */
@@ -65,14 +68,17 @@ struct ReplanOptions {
  copies hold, up to enough_grip, where an ε that does not beat open-close costs
  behind_cost of them; then ε. With grip_copies up to options.climb_samples more
  are then tried around the best, and while fewer than likely_grip of the copies
- are held all that is repeated, options.searches in all. Deterministic for a
- seed. @paper{Sec. V-B} */
+ are held all that is repeated, options.searches in all. With
+ options.until_sure the starts are looked at closely by their value of Eq. (6),
+ and the first sure grasp ends everything. Deterministic for a seed.
+ @paper{Sec. V-B} */
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,
                     uint64_t seed, const ReplanOptions& options = {});
 
-/** How well a task's starts do before any search: the least value of Eq. (6),
- infinity when all collide. Tasks with little of it need little replanning. */
+/** How well a task's starts do before any refit and search: the least value of
+ Eq. (6), infinity when all collide. Tasks with little of it need little
+ replanning. */
 double CalcPromise(const HandShape& hand, const TransferTask& task,
                    const Solid& solid, const Parameters& parameters);
 

@@ -21,6 +21,7 @@ Result<std::unique_ptr<Service>> Program::MakeService(
   GRASPDB_TRY(store, Store::Open(db, mode));
   ServiceOptions service;
   service.threads = options_.threads;
+  service.max_mesh_bytes = options_.max_mesh_bytes;
   service.max_queued_jobs = options_.max_queued_jobs;
   service.max_backups = options_.max_backups;
   return std::make_unique<Service>(

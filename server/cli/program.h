@@ -25,6 +25,7 @@ struct Options {
   std::string decoder;
   bool allow_unsandboxed{false};
   int threads{0};
+  int64_t max_mesh_bytes{ServiceOptions().max_mesh_bytes};
   int64_t max_queued_jobs{ServiceOptions().max_queued_jobs};
   int max_backups{ServiceOptions().max_backups};
   bool json{false};

@@ -7,6 +7,21 @@
 
 namespace graspdb {
 
+namespace {
+
+void PrintSettings(const Options& options, const ServerConfig& config) {
+  fmt::print(stderr,
+             "graspdb: host {}, port {}, threads {}, http-threads {}, "
+             "max-upload-bytes {}, max-queued-jobs {}, max-backups {}, "
+             "wait {}{}\n",
+             config.host, config.port, options.threads, config.http_threads,
+             config.max_upload_bytes, options.max_queued_jobs,
+             options.max_backups, config.default_wait.count(),
+             options.allow_unsandboxed ? ", allow-unsandboxed" : "");
+}
+
+}  // namespace
+
 void AddServe(Subcommands& commands) {
   CLI::App* command =
       commands.Add("serve", "Serve the database over HTTP.",
@@ -41,11 +56,13 @@ void AddServe(Subcommands& commands) {
   command->callback([&commands, config, wait] {
     commands.action = [config, wait](Program& program) -> Result<int> {
       GRASPDB_TRY_VOID(CheckAddress(*config));
+      program.options().max_mesh_bytes = config->max_upload_bytes;
       GRASPDB_TRY(service, program.OpenService(Store::OpenMode::kOpenOrCreate));
       config->default_wait = std::chrono::seconds(*wait);
       GRASPDB_TRY(confinement, service->CheckDecoder());
       fmt::print(stderr, "graspdb {}: database {}, decoder confined by {}\n",
                  EngineVersion(), program.options().db, confinement);
+      PrintSettings(program.options(), *config);
       return RunServer(*service, *config);
     };
   });

@@ -288,6 +288,10 @@ Result<CategoryFile> CategoryFileFromJson(const std::string& text) {
 std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
   std::vector<std::string> labels;
   fields.Read("face_labels", labels);
+  if (labels.size() > kMostFaces) {
+    fields.Fail("face_labels",
+                "at most " + std::to_string(kMostFaces) + " labels");
+  }
   if (const Json* faces = fields.Find("faces")) {
     auto expanded = ExpandRanges(*faces);
     if (expanded) {

@@ -149,9 +149,8 @@ Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
                  "reduce it", "mesh"};
   }
   if (!order.category.empty() && order.category != kAuto) {
-    if (const auto found = store_->FindCategory(order.category); !found) {
-      return found.error();
-    }
+    GRASPDB_TRY(category, store_->FindCategory(order.category));
+    GRASPDB_TRY_VOID(IndexLabels(category, order.face_labels));
   } else if (order.role == ObjectRole::kExample) {
     return Error{ErrorCode::kInvalidArgument, "An example needs a category.",
                  "name one of GET /v1/categories", "category"};

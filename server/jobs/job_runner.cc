@@ -18,6 +18,8 @@ namespace {
 constexpr double kLeastProgressForEta = 0.02;
 // Of the progress of importing and learning an example.
 constexpr double kImportShare = 0.05;
+// How soon the store is asked again that has failed.
+constexpr std::chrono::seconds kStoreRetry{2};
 
 }  // namespace
 
@@ -110,19 +112,22 @@ std::vector<LiveGrasp> JobRunner::ReadLiveGrasps(const std::string& id,
 
 Result<StoredJob> JobRunner::Cancel(const std::string& id) {
   GRASPDB_TRY(job, Find(id));
-  if (job.state == JobState::kRunning) {
-    const std::lock_guard lock(mutex_);
-    if (const auto found = live_.find(id); found != live_.end()) {
-      found->second.cancelled_by_user = true;
-      found->second.context->Cancel();
-      return job;
-    }
-  }
-  if (job.Finished()) return job;
+  if (job.Finished() || CancelLive(id)) return job;
   job.state = JobState::kCancelled;
   GRASPDB_TRY(cancelled, service_.store().FinishJob(job));
+  // It may have come to life meanwhile.
+  CancelLive(id);
   Notify();
   return cancelled;
+}
+
+bool JobRunner::CancelLive(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = live_.find(id);
+  if (found == live_.end()) return false;
+  found->second.cancelled_by_user = true;
+  found->second.context->Cancel();
+  return true;
 }
 
 JobRunner::Clock::time_point JobRunner::ToClock(int64_t unix_milliseconds) {
@@ -150,7 +155,7 @@ void JobRunner::Work(bool slow) {
     }
     // Once in a while without a call, for when the store has failed.
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::seconds(2),
+    changed_.wait_for(lock, kStoreRetry,
                       [&] { return stopping_ || changes_ != seen; });
   }
 }
@@ -173,6 +178,8 @@ void JobRunner::Run(StoredJob job) {
     if (stopping_) context->Cancel();
   }
   Notify();
+  // Who cancels it from now on finds it alive; who did before wrote so.
+  if (const auto now = Find(id); now && now->Finished()) context->Cancel();
   const Result<std::string> result = context->TimedOut()
                                          ? Result<std::string>(MakeTimedOut())
                                          : Execute(job, *context);
@@ -200,17 +207,31 @@ void JobRunner::Run(StoredJob job) {
         cancelled && context->TimedOut() ? MakeTimedOut() : result.error();
   }
   // A job that the end of the server interrupted stays as it is, to be queued.
-  if (!(cancelled && interrupted && !cancelled_by_user)) {
-    if (const auto done = service_.store().FinishJob(job); !done) {
-      std::fprintf(stderr, "graspdb: job %s: %s\n", id.c_str(),
-                   done.error().message.c_str());
-    }
-  }
+  if (!(cancelled && interrupted && !cancelled_by_user)) Finish(job);
   {
     const std::lock_guard lock(mutex_);
     live_.erase(id);
   }
   Notify();
+}
+
+void JobRunner::Finish(const StoredJob& job) {
+  bool told = false;
+  while (true) {
+    const auto done = service_.store().FinishJob(job);
+    if (done) return;
+    if (!told) {
+      std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),
+                   done.error().message.c_str());
+    }
+    told = true;
+    // A full disk may have room again. The next server does it all again.
+    std::unique_lock lock(mutex_);
+    if (done.error().code != ErrorCode::kStorage ||
+        changed_.wait_for(lock, kStoreRetry, [this] { return stopping_; })) {
+      return;
+    }
+  }
 }
 
 Result<std::string> JobRunner::Execute(const StoredJob& job,

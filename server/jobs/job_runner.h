@@ -67,6 +67,10 @@ class JobRunner {
   static Clock::time_point ToClock(int64_t unix_milliseconds);
   void Work(bool slow);
   void Run(StoredJob job);
+  // Whether it runs here.
+  bool CancelLive(const std::string& id);
+  // Writes what became of it, as soon as that can be written.
+  void Finish(const StoredJob& job);
   // The id of what the job made.
   Result<std::string> Execute(const StoredJob& job, ExecutionContext& context);
   Result<std::string> ExecuteImport(const StoredJob& job,

@@ -155,16 +155,14 @@ Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
       "face_labels"};
 }
 
-Result<SegmentedObject> SegmentByLabels(
-    const StoredCategory& category, const ObjectMeshes& meshes,
-    const std::vector<std::string>& labels) {
-  GRASPDB_TRY_VOID(CheckFaceLabels(labels, meshes.canonical.num_triangles()));
+Result<std::vector<int>> IndexLabels(const StoredCategory& category,
+                                     const std::vector<std::string>& labels) {
   std::map<std::string, int> indices;
   for (const CategoryPart& part : category.parts) {
     indices.emplace(part.label, static_cast<int>(indices.size()));
   }
-  ObjectMeshes labelled = meshes;
-  labelled.canonical_labels.clear();
+  std::vector<int> indexed;
+  indexed.reserve(labels.size());
   for (const std::string& label : labels) {
     const auto found = indices.find(label);
     if (found == indices.end()) {
@@ -177,8 +175,18 @@ Result<SegmentedObject> SegmentByLabels(
           "Category '" + category.name + "' has no part '" + label + "'.",
           "known: " + known, "face_labels"};
     }
-    labelled.canonical_labels.push_back(found->second);
+    indexed.push_back(found->second);
   }
+  return indexed;
+}
+
+Result<SegmentedObject> SegmentByLabels(
+    const StoredCategory& category, const ObjectMeshes& meshes,
+    const std::vector<std::string>& labels) {
+  GRASPDB_TRY_VOID(CheckFaceLabels(labels, meshes.canonical.num_triangles()));
+  GRASPDB_TRY(indexed, IndexLabels(category, labels));
+  ObjectMeshes labelled = meshes;
+  labelled.canonical_labels = std::move(indexed);
   labelled.work_labels =
       CarryLabels(labelled.canonical, labelled.canonical_labels, labelled.work);
   StoredSegmentation record;

@@ -29,6 +29,11 @@ struct ExampleSet {
 Result<ExampleSet> LoadExamples(const Store& store, const std::string& category,
                                 const std::string& except);
 
+/** The place of each label among the category's parts.
+ @retval kInvalidArgument naming the known ones. */
+Result<std::vector<int>> IndexLabels(const StoredCategory& category,
+                                     const std::vector<std::string>& labels);
+
 /** @retval kInvalidArgument unless there is one label per face. */
 Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
                              int num_faces);

@@ -60,7 +60,8 @@ Result<HttpResponse> DeleteCategory(Service& service,
 }
 
 /** Imports a mesh as an example and, unless learn=false, learns from it. */
-Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
+Result<HttpResponse> PostExample(Service& service, const RouteOptions& options,
+                                 const HttpRequest& request) {
   QueryReader query(request.query);
   auto upload = ReadUpload(request, query, {"labels"});
   const auto name = query.Text("name");
@@ -82,7 +83,8 @@ Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
   }
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitImport(order, {idempotency.key(), deadline}));
-  return AnswerJob(service, request, std::chrono::seconds(0), job, idempotency,
+  return AnswerJob(service, *options.held_threads, request,
+                   std::chrono::seconds(0), job, idempotency,
                    [&](const StoredJob& done) -> Result<HttpResponse> {
                      return DescribeObject(service, 200, done.result_id);
                    });
@@ -90,7 +92,8 @@ Result<HttpResponse> PostExample(Service& service, const HttpRequest& request) {
 
 }  // namespace
 
-void AddCategoryRoutes(Router& router, Service& service) {
+void AddCategoryRoutes(Router& router, Service& service,
+                       const RouteOptions& options) {
   const std::string one = "/v1/categories/{name}";
   router.Add({"GET", "/v1/categories", BodyKind::kNone,
               [&service](const HttpRequest& request) {
@@ -113,8 +116,8 @@ void AddCategoryRoutes(Router& router, Service& service) {
          return DeleteCategory(service, request);
        }});
   router.Add({"POST", one + "/examples", BodyKind::kUpload,
-              [&service](const HttpRequest& request) {
-                return PostExample(service, request);
+              [&service, options](const HttpRequest& request) {
+                return PostExample(service, options, request);
               }});
 }
 

@@ -275,8 +275,8 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
   GRASPDB_TRY(job,
               service.SubmitTransfer(order, {idempotency.key(), deadline}));
   return AnswerJob(
-      service, request, options.default_wait, job, idempotency,
-      [&](const StoredJob& done) -> Result<HttpResponse> {
+      service, *options.held_threads, request, options.default_wait, job,
+      idempotency, [&](const StoredJob& done) -> Result<HttpResponse> {
         const auto answer =
             service.DescribeTransfer(done.result_id, order.count);
         if (!answer && answer.error().code == ErrorCode::kNotFound) {

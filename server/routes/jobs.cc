@@ -48,7 +48,7 @@ Result<HttpResponse> StreamJob(const Service& service, WorkSlots& slots,
   auto place = slots.Take(request.stop);
   if (!place) {
     return Error{ErrorCode::kOverloaded,
-                 "As many event streams are open as the server allows.",
+                 "As many clients wait for jobs as the server allows.",
                  "Ask GET /v1/jobs/{id} now and then instead."};
   }
   HttpResponse response;
@@ -74,12 +74,11 @@ void AddJobRoutes(Router& router, Service& service,
               [&service](const HttpRequest& request) {
                 return GetJob(service, request);
               }});
-  router.Add({"GET", "/v1/jobs/{id}/events", BodyKind::kNone,
-              [&service,
-               slots = std::make_shared<WorkSlots>(
-                   options.max_event_streams, 0)](const HttpRequest& request) {
-                return StreamJob(service, *slots, request);
-              }});
+  router.Add(
+      {"GET", "/v1/jobs/{id}/events", BodyKind::kNone,
+       [&service, slots = options.held_threads](const HttpRequest& request) {
+         return StreamJob(service, *slots, request);
+       }});
   router.Add({"DELETE", "/v1/jobs/{id}", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return DeleteJob(service, request);

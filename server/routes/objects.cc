@@ -189,13 +189,15 @@ Result<HttpResponse> PostSegmentation(Service& service,
   order.cascade = cascade;
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitSegment(order, {idempotency.key(), deadline}));
-  return AnswerJob(service, request, options.default_wait, job, idempotency,
+  return AnswerJob(service, *options.held_threads, request,
+                   options.default_wait, job, idempotency,
                    [&](const StoredJob& done) {
                      return DescribeObject(service, 200, done.result_id);
                    });
 }
 
 Result<HttpResponse> PostGraspSpaces(Service& service,
+                                     const RouteOptions& options,
                                      const HttpRequest& request) {
   QueryReader query(request.query);
   const auto deadline = ReadDeadline(query);
@@ -205,8 +207,8 @@ Result<HttpResponse> PostGraspSpaces(Service& service,
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitLearn(order, {idempotency.key(), deadline}));
   return AnswerJob(
-      service, request, std::chrono::seconds(0), job, idempotency,
-      [&](const StoredJob& done) -> Result<HttpResponse> {
+      service, *options.held_threads, request, std::chrono::seconds(0), job,
+      idempotency, [&](const StoredJob& done) -> Result<HttpResponse> {
         GraspSpaceFilter filter;
         filter.object_id = done.result_id;
         PageRequest all;
@@ -257,8 +259,8 @@ void AddObjectRoutes(Router& router, Service& service,
                 return PostSegmentation(service, options, request);
               }});
   router.Add({"POST", one + "/grasp-spaces", BodyKind::kJson,
-              [&service](const HttpRequest& request) {
-                return PostGraspSpaces(service, request);
+              [&service, options](const HttpRequest& request) {
+                return PostGraspSpaces(service, options, request);
               }});
 }
 

@@ -19,8 +19,9 @@ struct RouteOptions {
   /** How long a request waits for its job unless the client says, where most
    jobs are short. */
   std::chrono::seconds default_wait{60};
-  /** Open at once; each holds one of the server's threads. */
-  int max_event_streams{32};
+  /** For event streams and requests that wait for their jobs: each holds one of
+   the server's threads, and some must be left. */
+  std::shared_ptr<WorkSlots> held_threads{std::make_shared<WorkSlots>(32, 0)};
   /** What GET /metrics tells of requests; may be null. */
   std::shared_ptr<RequestMetrics> metrics;
   std::shared_ptr<GraspTexts> grasp_texts{std::make_shared<GraspTexts>()};
@@ -29,7 +30,8 @@ struct RouteOptions {
 };
 
 void AddBackupRoutes(Router& router, Service& service);
-void AddCategoryRoutes(Router& router, Service& service);
+void AddCategoryRoutes(Router& router, Service& service,
+                       const RouteOptions& options);
 void AddGraspRoutes(Router& router, Service& service,
                     const RouteOptions& options);
 void AddGraspSpaceRoutes(Router& router, Service& service);

@@ -89,10 +89,12 @@ int RunServer(Service& service, const ServerConfig& config) {
   RouteOptions routes;
   routes.metrics = options.metrics;
   routes.default_wait = config.default_wait;
-  routes.max_event_streams = static_cast<int>(config.http_threads) / 2;
+  const auto threads = static_cast<int>(config.http_threads);
+  routes.held_threads =
+      std::make_shared<WorkSlots>(std::max(1, threads / 2), 0);
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  routes.work_slots = std::make_shared<WorkSlots>(
-      std::max(1, cores), static_cast<int>(config.http_threads) / 4);
+  routes.work_slots =
+      std::make_shared<WorkSlots>(std::max(1, cores), threads / 4);
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());

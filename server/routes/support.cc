@@ -252,7 +252,7 @@ Result<HttpResponse> AnswerOnce(
 }
 
 Result<HttpResponse> AnswerJob(
-    const Service& service, const HttpRequest& request,
+    const Service& service, WorkSlots& held_threads, const HttpRequest& request,
     std::chrono::seconds otherwise, const StoredJob& submitted,
     Idempotency& idempotency,
     const std::function<Result<HttpResponse>(const StoredJob&)>& answer) {
@@ -264,7 +264,8 @@ Result<HttpResponse> AnswerJob(
   const auto deadline =
       steady_clock::now() + ReadPreferredWait(request, otherwise);
   StoredJob job = submitted;
-  while (!job.Finished() && steady_clock::now() < deadline &&
+  const auto may_wait = held_threads.Take(request.stop);
+  while (may_wait && !job.Finished() && steady_clock::now() < deadline &&
          !request.stop.stop_requested()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(
         deadline - steady_clock::now());

@@ -12,6 +12,7 @@
 #include "server/http/query.h"
 #include "server/http/router.h"
 #include "server/jobs/service.h"
+#include "server/routes/work_slots.h"
 
 /** @file
  What several routes share. */
@@ -99,12 +100,13 @@ class Idempotency {
 };
 
 /** Keeps a submitted job under its Idempotency-Key, then waits for it for as
- long as the client wants, or until the server stops.
+ long as the client wants, or until the server stops; not at all when as many
+ wait as may.
  @param answer  Makes the answer of a job that succeeded.
  @returns 202 with the job and its Location when it is not done by then.
  @retval The job's error when it failed; kCancelled. */
 Result<HttpResponse> AnswerJob(
-    const Service& service, const HttpRequest& request,
+    const Service& service, WorkSlots& held_threads, const HttpRequest& request,
     std::chrono::seconds otherwise, const StoredJob& submitted,
     Idempotency& idempotency,
     const std::function<Result<HttpResponse>(const StoredJob&)>& answer);

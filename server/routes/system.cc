@@ -56,7 +56,7 @@ void AddSystemRoutes(Router& router, Service& service) {
 Router MakeRouter(Service& service, const RouteOptions& options) {
   Router router;
   AddSystemRoutes(router, service);
-  AddCategoryRoutes(router, service);
+  AddCategoryRoutes(router, service, options);
   AddObjectRoutes(router, service, options);
   AddPartRoutes(router, service);
   AddGraspSpaceRoutes(router, service);

@@ -37,7 +37,8 @@ Result<HttpResponse> PostVerification(Service& service,
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitVerify(order, {idempotency.key(), deadline}));
   return AnswerJob(
-      service, request, options.default_wait, job, idempotency,
+      service, *options.held_threads, request, options.default_wait, job,
+      idempotency,
       [&](const StoredJob&) { return ListJudged(service, order); });
 }
 

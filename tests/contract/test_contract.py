@@ -1,5 +1,6 @@
 """Every operation of schema/openapi.yaml, called on a real server."""
 
+import concurrent.futures
 import gzip
 import hashlib
 import json
@@ -829,6 +830,31 @@ def test_event_streams_never_take_all_threads(binary, contract, world, server,
         time.sleep(0.2)
     # SIGTERM ends streams.
     assert live.stop() == 0, live.log()
+
+
+def test_waiting_requests_never_take_all_threads(binary, world, server, tmp_path):
+    database = back_up(binary, server, tmp_path)
+    live = LiveServer(binary, database, tmp_path, "--http-threads", "4")
+    url = f"{live.url}/v1/objects/{world['example']['id']}/grasp-spaces"
+
+    def learn(seed):
+        return requests.post(url, json={"parts": ["handle"], "seed": seed}, timeout=120,
+                             headers={"Prefer": "wait=100"})
+
+    # The first two wait, as half of the threads may; the next ones get their job.
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        waiting = [pool.submit(learn, seed) for seed in (1, 2)]
+        deadline = time.monotonic() + 30
+        while len(requests.get(f"{live.url}/v1/jobs", timeout=5).json()["items"]) < 2:
+            assert time.monotonic() < deadline
+            time.sleep(0.1)
+        for seed in (3, 4, 5):
+            assert learn(seed).status_code == 202
+            assert requests.get(f"{live.url}/healthz", timeout=5).ok
+        assert not any(one.done() for one in waiting)
+        # SIGTERM ends their waiting.
+        assert live.stop() == 0, live.log()
+        assert [one.result().status_code for one in waiting] == [202, 202]
 
 
 def test_a_full_queue_is_a_503(binary, contract, world, server, tmp_path):

@@ -72,6 +72,7 @@ def test_one_key_has_one_effect_however_often_it_is_sent(phoenix):
     keys = list(range(wanted))
     random.Random(1).shuffle(keys)
     done = {}
+    cut = []
     lock = threading.Lock()
 
     def work():
@@ -86,6 +87,8 @@ def test_one_key_has_one_effect_however_often_it_is_sent(phoenix):
                     answer = requests.post(phoenix.url + "/v1/objects?format=obj", data=body,
                                            headers={"Idempotency-Key": f"key-{key}"}, timeout=60)
                 except requests.RequestException:
+                    with lock:
+                        cut.append(key)
                     time.sleep(0.05)
                     continue
                 # Killed while it answered; in flight; too many at once.
@@ -102,10 +105,9 @@ def test_one_key_has_one_effect_however_often_it_is_sent(phoenix):
     chance = random.Random(2)
     with concurrent.futures.ThreadPoolExecutor(8) as pool:
         clients = [pool.submit(work) for _ in range(8)]
-        while True:
-            time.sleep(chance.uniform(0.2, 0.8))
-            if all(client.done() for client in clients):
-                break
+        while not all(client.done() for client in clients):
+            # The first one soon: on a quiet machine all is over in a second.
+            time.sleep(chance.uniform(0.2, 0.8) if starts else 0.1)
             phoenix.kill()
             starts.append(phoenix.start())
     for client in clients:
@@ -123,7 +125,7 @@ def test_one_key_has_one_effect_however_often_it_is_sent(phoenix):
     assert len(after) - len(before) == wanted
     print(f"\n{wanted} objects, {len(starts)} kills, "
           f"slowest start {max(starts, default=0):.2f} s")
-    assert starts, "nothing was killed"
+    assert cut, "no request was cut off"
 
 
 def test_a_job_is_taken_up_again_and_done_once(phoenix):

@@ -76,6 +76,26 @@ TEST_F(GripperTask, MoreSearchesFindNoWorseAGraspAndOneThatIsLikelyEndsThem) {
   EXPECT_EQ(*ended.grasp, *one.grasp);
 }
 
+TEST_F(GripperTask, UntilSureTheFirstSureGraspEndsTheSearch) {
+  const Solid box(workshop::MakeBox({0.04, 0.04, 0.04}, 4));
+  const auto count_samples = [&](bool until_sure) {
+    int asked = 0;
+    const ReplanResult result = Replan(
+        hand_, task_, box, parameters_, 3,
+        {.climb_samples = 30, .until_sure = until_sure, .wanted = [&asked] {
+           ++asked;
+           return true;
+         }});
+    EXPECT_EQ(result.outcome, TransferOutcome::kSucceeded);
+    EXPECT_GE(CalcRobustness(hand_, *result.grasp, box, parameters_, 3,
+                             {.copies = parameters_.replan.grip_copies})
+                  .gripped,
+              parameters_.replan.enough_grip);
+    return asked;
+  };
+  EXPECT_LT(count_samples(true), count_samples(false));
+}
+
 TEST_F(GripperTask, TheFittedWristBringsContactsNearerToTheirTargets) {
   const auto find_misfit = [this](const RigidTransform& X_NH) {
     double sum = 0.0;

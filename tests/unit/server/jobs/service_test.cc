@@ -2,7 +2,10 @@
 #include "server/files.h"
 #include "server/jobs/data_folder.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -597,6 +600,12 @@ TEST_F(ServiceTest, WhatCanBeCheckedAtOnceIsRefusedBeforeAJobIsMade) {
   ImportOrder import = MakeNovelOrder();
   import.category = "cup";
   EXPECT_FALSE(service->SubmitImport(import));
+  import = MakeNovelOrder();
+  import.face_labels = {"body", "lid"};
+  const auto unknown = service->SubmitImport(import);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().field, "face_labels");
+  EXPECT_THAT(unknown.error().hint, HasSubstr("handle"));
   LearnOrder lesson;
   lesson.object_id = "x";
   EXPECT_FALSE(service->SubmitLearn(lesson));
@@ -681,6 +690,42 @@ TEST_F(ServiceTest, AJobThatMissesItsDeadlineFailsAndStoresNothing) {
   ASSERT_EQ(done.state, JobState::kFailed);
   EXPECT_EQ(done.error.value().code, ErrorCode::kDeadlineExceeded);
   EXPECT_EQ(service->store().Count().value().grasp_spaces, 0);
+}
+
+// While there is one no file of this process can be written to.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit none = before_;
+    none.rlim_cur = 0;
+    setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(ServiceTest, HowAJobEndedIsWrittenOnceTheDiskHasRoom) {
+  const auto service = MakeService(Copy("imported"));
+  ASSERT_TRUE(service->StartWorkers());
+  LearnOrder lesson;
+  lesson.object_id = FindExample(*service);
+  const auto job = service->SubmitLearn(lesson).value();
+  while (service->FindJob(job.id).value().stage.empty()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  {
+    const FullDisk full;
+    ASSERT_TRUE(service->CancelJob(job.id));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_EQ(service->FindJob(job.id).value().state, JobState::kRunning);
+  }
+  EXPECT_EQ(service->WaitForJob(job.id, kLongEnough).value().state,
+            JobState::kCancelled);
 }
 
 TEST_F(ServiceTest, SegmentingAgainIsAJob) {
