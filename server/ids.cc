@@ -83,6 +83,11 @@ std::string MakeUuid() {
                      random & 0xffffffffffff);
 }
 
+std::string MakeUuidBound(int64_t unix_milliseconds) {
+  return fmt::format("{:08x}-{:04x}", unix_milliseconds >> 16,
+                     unix_milliseconds & 0xffff);
+}
+
 int64_t CalcUnixMilliseconds() {
   const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::milliseconds>(since_epoch)

@@ -23,6 +23,10 @@ std::string MakeContentId(std::string_view content);
  one process and millisecond. */
 std::string MakeUuid();
 
+/** What comes before every UUIDv7 of that time or later, and after all others.
+ */
+std::string MakeUuidBound(int64_t unix_milliseconds);
+
 /** Now, in milliseconds of Unix time. */
 int64_t CalcUnixMilliseconds();
 

@@ -9,7 +9,6 @@
 #include "engine/base/random.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/planning/perturbed_copies.h"
-#include "engine/quality/opposed_contacts.h"
 #include "engine/transfer/replan_objective.h"
 
 namespace graspdb {
@@ -17,8 +16,6 @@ namespace {
 
 // A start whose open hand collides draws back in these steps, metres.
 constexpr double kRetreatStep = 0.0025;
-// Of the transfer's limits, so that rounding does not lead beyond them.
-constexpr double kWithinLimits = 0.98;
 // Annealings that follow one another draw from nearer and from farther around,
 // shares of the trust region.
 constexpr double kReaches[] = {1.0, 0.5, 1.5};
@@ -28,8 +25,6 @@ constexpr double kLeastGrip = 0.05;
 constexpr double kClimbReaches[] = {1.5, 0.6};
 // The residual, N, that stands for no grip at all in the objective.
 constexpr double kNoGrip = 5.0;
-// How far the hand's frame reaches when the wrist is fitted, metres.
-constexpr double kFrameLength = 0.05;
 
 TransferOutcome ToOutcome(GraspFailure failure) {
   switch (failure) {
@@ -49,34 +44,13 @@ TransferOutcome ToOutcome(GraspFailure failure) {
   return TransferOutcome::kUnstable;
 }
 
-// Back to what may be called a transfer of the source grasp.
-RigidTransform Confine(const RigidTransform& X_NH, const RigidTransform& around,
-                       const TransferLimits& limits) {
-  RigidTransform confined = X_NH;
-  const Eigen::Vector3d shift = X_NH.translation - around.translation;
-  const double max_shift = kWithinLimits * limits.max_translation;
-  if (shift.norm() > max_shift) {
-    confined.translation =
-        around.translation + shift * (max_shift / shift.norm());
-  }
-  const Eigen::AngleAxisd turn(around.rotation.transpose() * X_NH.rotation);
-  const double max_turn = kWithinLimits * limits.max_rotation;
-  if (turn.angle() > max_turn) {
-    confined.rotation =
-        around.rotation *
-        Eigen::AngleAxisd(max_turn, turn.axis()).toRotationMatrix();
-  }
-  return confined;
-}
-
 // T* X_EH and, if wanted, the wrist that brings the contacts to their targets.
 std::vector<RigidTransform> MakeStarts(const HandModel& hand,
                                        const TransferTask& task,
                                        const Parameters& parameters) {
   std::vector<RigidTransform> starts{task.X_NH};
   if (parameters.replan.aimed_starts) {
-    starts.push_back(
-        Confine(FitWrist(hand, task), task.X_NH, parameters.transfer));
+    starts.push_back(Confine(FitWrist(hand, task), task, parameters.transfer));
   }
   return starts;
 }
@@ -188,7 +162,7 @@ class Replanner {
         ranked.push_back({sample, Evaluate(sample, &closed.q)});
         if (!replan_.aimed_starts) break;
         // The fingers have met a surface of another size: fit what they are.
-        sample.X_NH = Confine(FitWrist(hand_.model(), closed), task_.X_NH,
+        sample.X_NH = Confine(FitWrist(hand_.model(), closed), task_,
                               parameters_.transfer);
       }
     }
@@ -214,7 +188,7 @@ class Replanner {
     for (double retreat = 0.0; retreat <= parameters_.transfer.max_translation;
          retreat += kRetreatStep) {
       drawn.X_NH.translation = sample.X_NH.translation - retreat * approach;
-      drawn.X_NH = Confine(drawn.X_NH, task_.X_NH, parameters_.transfer);
+      drawn.X_NH = Confine(drawn.X_NH, task_, parameters_.transfer);
       if (IsFree(drawn)) {
         sample = drawn;
         return;
@@ -427,7 +401,7 @@ class Replanner {
       sample.X_NH.rotation =
           around.X_NH.rotation *
           random_.NextRotationWithin(share * replan_.trust_rotation);
-      sample.X_NH = Confine(sample.X_NH, task_.X_NH, parameters_.transfer);
+      sample.X_NH = Confine(sample.X_NH, task_, parameters_.transfer);
     }
     return sample;
   }
@@ -455,43 +429,6 @@ class Replanner {
 };
 
 }  // namespace
-
-bool IsTransferOf(const TransferTask& task, const Grasp& grasp,
-                  const TransferLimits& limits) {
-  const RigidTransform& X_NH = grasp.configuration.X_OH;
-  if ((X_NH.translation - task.X_NH.translation).norm() >
-          limits.max_translation ||
-      CalcRotationAngle(X_NH.rotation.transpose() * task.X_NH.rotation) >
-          limits.max_rotation) {
-    return false;
-  }
-  std::vector<Contact> targets;
-  for (const ContactTarget& target : task.targets) {
-    targets.push_back({target.link, target.p_N, target.nhat_N, 0.0});
-  }
-  return ReachesOpposedTargets(grasp.contacts, targets,
-                               limits.max_target_distance,
-                               limits.min_opposed_contacts);
-}
-
-RigidTransform FitWrist(const HandModel& hand, const TransferTask& task) {
-  const auto X_HL = CalcLinkPoses(hand, task.q);
-  // The hand's own frame, where T* puts it, holds what targets leave free.
-  const auto n = static_cast<int>(task.targets.size());
-  Eigen::Matrix3Xd p_H(3, n + 4), p_N(3, n + 4);
-  for (int i = 0; i < n; ++i) {
-    const ContactTarget& target = task.targets[i];
-    p_H.col(i) = X_HL[target.link] * target.p_L;
-    p_N.col(i) = target.p_N;
-  }
-  p_H.rightCols<4>() << Eigen::Vector3d::Zero(),
-      kFrameLength * Eigen::Matrix3d::Identity();
-  for (int i = n; i < n + 4; ++i) {
-    p_N.col(i) = task.X_NH * Eigen::Vector3d(p_H.col(i));
-  }
-  const Eigen::Matrix4d fit = Eigen::umeyama(p_H, p_N, false);
-  return {fit.topLeftCorner<3, 3>(), fit.topRightCorner<3, 1>()};
-}
 
 ReplanResult Replan(const HandShape& hand, const TransferTask& task,
                     const Solid& solid, const Parameters& parameters,

@@ -41,6 +41,7 @@ void AddServe(Subcommands& commands) {
       ->capture_default_str();
   AddSetting(command, "--max-upload-bytes", config->max_upload_bytes,
              "largest mesh")
+      ->check(CLI::Range(int64_t{1}, int64_t{1} << 40))
       ->capture_default_str();
   AddSetting(command, "--max-queued-jobs", commands.options.max_queued_jobs,
              "jobs that may wait, slow ones and others each")

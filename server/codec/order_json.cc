@@ -1,6 +1,8 @@
 #include "server/codec/order_json.h"
 
+#include <algorithm>
 #include <climits>
+#include <utility>
 
 #include "server/codec/input_json.h"
 #include "server/codec/json.h"
@@ -26,6 +28,18 @@ void ReadParameters(JsonFields& fields, Parameters& parameters) {
   }
 }
 
+GraspStage ReadStage(const std::string& text, JsonFields& fields) {
+  const auto stage = ParseGraspStage(text);
+  if (stage) return *stage;
+  fields.Fail(stage.error());
+  return GraspStage::kLearned;
+}
+
+// A label per face is the larger part of some orders.
+std::string EncodeLabels(const ImportOrder& order) {
+  return order.face_labels.empty() ? "" : DumpJson(Json(order.face_labels));
+}
+
 Json Encode(const ImportOrder& order) {
   Json json;
   json["file_name"] = order.file_name;
@@ -34,24 +48,53 @@ Json Encode(const ImportOrder& order) {
   json["role"] = ToString(order.role);
   json["category"] = order.category;
   json["name"] = order.name;
-  json["face_labels"] = order.face_labels;
+  json["face_labels"] = Json::array();
   json["seed"] = order.seed;
   json["learn"] = order.learn;
+  if (!order.face_labels.empty()) {
+    json["labels_bytes"] = EncodeLabels(order).size();
+  }
   return json;
 }
 
-ImportOrder ReadImportOrder(JsonFields& fields) {
+// Of the payload: what comes before the mesh.
+std::vector<std::string> DecodeLabels(const std::string& text,
+                                      JsonFields& fields) {
+  std::vector<std::string> labels;
+  if (text.empty()) return labels;
+  const auto json = ParseJson(R"({"face_labels":)" + text + "}", kOrderLimits);
+  if (!json) {
+    fields.Fail(json.error());
+    return labels;
+  }
+  JsonFields inner(*json, "");
+  inner.Read("face_labels", labels);
+  if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
+  return labels;
+}
+
+ImportOrder ReadImportOrder(JsonFields& fields, std::string payload) {
   ImportOrder order;
   std::string role = ToString(order.role);
+  int labels_bytes = 0;
   fields.Read("file_name", order.file_name);
   fields.Read("format", order.format);
   fields.Read("units", order.units);
   fields.Read("role", role);
   fields.Read("category", order.category);
   fields.Read("name", order.name);
-  fields.Read("face_labels", order.face_labels);
+  fields.Read("face_labels", order.face_labels);  // There in older jobs.
+  fields.ReadInteger("labels_bytes", labels_bytes, 0,
+                     static_cast<int>(std::min<size_t>(
+                         payload.size(), kOrderLimits.max_bytes)));
   fields.ReadSeed("seed", order.seed);
   fields.Read("learn", order.learn);
+  if (labels_bytes > 0) {
+    const auto end = static_cast<size_t>(labels_bytes);
+    order.face_labels = DecodeLabels(payload.substr(0, end), fields);
+    payload.erase(0, end);
+  }
+  order.bytes = std::move(payload);
   const auto parsed = ParseObjectRole(role);
   if (parsed) {
     order.role = *parsed;
@@ -84,19 +127,7 @@ LearnOrder ReadLearnOrder(JsonFields& fields) {
   return order;
 }
 
-}  // namespace
-
-Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kOrderLimits));
-  JsonFields fields(json, "");
-  SegmentOrder order = ReadSegmentOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
-}
-
-Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text));
-  JsonFields fields(json, "");
+VerifyOrder ReadVerifyOrder(JsonFields& fields) {
   VerifyOrder order;
   GraspQuery& query = order.query;
   fields.Read("category", query.category);
@@ -111,29 +142,72 @@ Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
   if (fields.Has("stage")) {
     std::string stage;
     fields.RequireText("stage", stage);
-    const auto parsed = ParseGraspStage(stage);
-    if (parsed) {
-      query.stage = *parsed;
-    } else {
-      fields.Fail(parsed.error());
-    }
+    query.stage = ReadStage(stage, fields);
   }
   order.limit = 1000;
   fields.ReadInteger("limit", order.limit, 1, kMostVerified);
   fields.Read("again", order.again);
+  return order;
+}
+
+TransferOrder ReadTransferOrder(JsonFields& fields, std::string payload) {
+  TransferOrder order;
+  if (const Json* mesh = fields.Find("mesh")) {
+    JsonFields inner(*mesh, "mesh");
+    order.mesh = ReadImportOrder(inner, std::move(payload));
+    if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
+  }
+  std::string stage = ToString(order.stage);
+  fields.Read("object", order.object_id);
+  fields.Read("category", order.category);
+  fields.Read("parts", order.part_labels);
+  fields.Read("task", order.task);
+  fields.Read("hand", order.hand);
+  if (const Json* count = fields.Find("count");
+      count != nullptr && !count->is_null()) {
+    int number = 0;
+    fields.ReadInteger("count", number, 1, INT_MAX);
+    order.count = number;
+  }
+  fields.Read("exhaustive", order.exhaustive);
+  fields.ReadInteger("sources", order.sources, 1, INT_MAX);
+  fields.Read("stage", stage);
+  order.stage = ReadStage(stage, fields);
+  ReadParameters(fields, order.parameters);
+  fields.ReadSeed("seed", order.seed);
+  return order;
+}
+
+// The whole of a text: read() takes the members that it knows.
+template <class F>
+auto ReadOrder(const std::string& text, const JsonLimits& limits, F&& read)
+    -> Result<decltype(read(std::declval<JsonFields&>()))> {
+  GRASPDB_TRY(json, ParseJson(text, limits));
+  JsonFields fields(json, "");
+  auto order = read(fields);
   GRASPDB_TRY_VOID(fields.Finish());
   return order;
+}
+
+}  // namespace
+
+Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
+  return ReadOrder(text, kOrderLimits, ReadSegmentOrder);
+}
+
+Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
+  return ReadOrder(text, JsonLimits(), ReadVerifyOrder);
 }
 
 Result<LearnOrder> LearnOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text));
-  JsonFields fields(json, "");
-  LearnOrder order = ReadLearnOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
+  return ReadOrder(text, JsonLimits(), ReadLearnOrder);
 }
 
 std::string ToJson(const ImportOrder& order) { return DumpJson(Encode(order)); }
+
+std::string MakePayload(const ImportOrder& order) {
+  return EncodeLabels(order) + order.bytes;
+}
 
 std::string ToJson(const SegmentOrder& order) {
   Json json;
@@ -188,65 +262,35 @@ std::string ToJson(const TransferOrder& order) {
   return DumpJson(json);
 }
 
-Result<ImportOrder> StoredImportOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kOrderLimits));
-  JsonFields fields(json, "");
-  ImportOrder order = ReadImportOrder(fields);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
+Result<ImportOrder> StoredImportOrderFromJson(const std::string& text,
+                                              std::string payload) {
+  return ReadOrder(text, kOrderLimits, [&](JsonFields& fields) {
+    return ReadImportOrder(fields, std::move(payload));
+  });
 }
 
 Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kOrderLimits));
-  JsonFields fields(json, "");
-  SegmentOrder order = ReadSegmentOrder(fields);
-  fields.RequireText("object", order.object_id);
-  fields.Read("cascade", order.cascade);
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
+  return ReadOrder(text, kOrderLimits, [](JsonFields& fields) {
+    SegmentOrder order = ReadSegmentOrder(fields);
+    fields.RequireText("object", order.object_id);
+    fields.Read("cascade", order.cascade);
+    return order;
+  });
 }
 
 Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kOrderLimits));
-  JsonFields fields(json, "");
-  std::string object_id;
-  fields.RequireText("object", object_id);
-  LearnOrder order = ReadLearnOrder(fields);
-  order.object_id = object_id;
-  GRASPDB_TRY_VOID(fields.Finish());
-  return order;
+  return ReadOrder(text, kOrderLimits, [](JsonFields& fields) {
+    LearnOrder order = ReadLearnOrder(fields);
+    fields.RequireText("object", order.object_id);
+    return order;
+  });
 }
 
-Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text) {
-  GRASPDB_TRY(json, ParseJson(text, kOrderLimits));
-  JsonFields fields(json, "");
-  TransferOrder order;
-  if (const Json* mesh = fields.Find("mesh")) {
-    JsonFields inner(*mesh, "mesh");
-    order.mesh = ReadImportOrder(inner);
-    if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
-  }
-  std::string stage = ToString(order.stage);
-  fields.Read("object", order.object_id);
-  fields.Read("category", order.category);
-  fields.Read("parts", order.part_labels);
-  fields.Read("task", order.task);
-  fields.Read("hand", order.hand);
-  if (const Json* count = fields.Find("count");
-      count != nullptr && !count->is_null()) {
-    int number = 0;
-    fields.ReadInteger("count", number, 1, INT_MAX);
-    order.count = number;
-  }
-  fields.Read("exhaustive", order.exhaustive);
-  fields.ReadInteger("sources", order.sources, 1, INT_MAX);
-  fields.Read("stage", stage);
-  ReadParameters(fields, order.parameters);
-  fields.ReadSeed("seed", order.seed);
-  GRASPDB_TRY_VOID(fields.Finish());
-  GRASPDB_TRY(parsed, ParseGraspStage(stage));
-  order.stage = parsed;
-  return order;
+Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text,
+                                                  std::string payload) {
+  return ReadOrder(text, kOrderLimits, [&](JsonFields& fields) {
+    return ReadTransferOrder(fields, std::move(payload));
+  });
 }
 
 }  // namespace graspdb

@@ -26,15 +26,20 @@ Result<LearnOrder> LearnOrderFromJson(const std::string& text);
  than 1000 grasps unless limit says. */
 Result<VerifyOrder> VerifyOrderFromJson(const std::string& text);
 
-// Orders in the jobs table, whole but for the bytes of a mesh.
+// Orders in the jobs table. What may be large is in the job's payload: the
+// bytes of a mesh, which begin with labels_bytes of face labels.
 std::string ToJson(const SegmentOrder& order);
 std::string ToJson(const VerifyOrder& order);  ///< As POST /v1/verifications.
+/** Without bytes and face labels, which are in MakePayload(). */
 std::string ToJson(const ImportOrder& order);
+std::string MakePayload(const ImportOrder& order);
 std::string ToJson(const LearnOrder& order);
 std::string ToJson(const TransferOrder& order);
-Result<ImportOrder> StoredImportOrderFromJson(const std::string& text);
+Result<ImportOrder> StoredImportOrderFromJson(const std::string& text,
+                                              std::string payload);
 Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text);
 Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text);
-Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text);
+Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text,
+                                                  std::string payload);
 
 }  // namespace graspdb

@@ -129,8 +129,11 @@ Json Encode(const std::optional<Error>& error) {
   if (!error) return nullptr;
   Json json;
   json["code"] = ToString(error->code);
+  // Those two may tell of files and code of the server; the log has them.
   json["detail"] = error->code == ErrorCode::kInternal
                        ? "The server made a mistake."
+                   : error->code == ErrorCode::kStorage
+                       ? "The database could not be written or read."
                        : error->message;
   json["hint"] = OrNull(error->hint);
   json["field"] = OrNull(error->field);

@@ -29,6 +29,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostUrdfBytes = std::size_t{1} << 20;
 // More than any mesh within sensible limits needs.
 constexpr std::size_t kMostAnswerBytes = std::size_t{512} << 20;
+// Between two looks at whether anyone still waits.
+constexpr int64_t kStepMilliseconds = 50;
 
 // What a helper reads, in words.
 struct Subject {
@@ -134,20 +136,21 @@ int Spawn(const std::vector<std::string>& command, int socket, pid_t* pid) {
   return error_number;
 }
 
-enum class TalkEnd { kAnswered, kDeadline, kTooMuch };
+enum class TalkEnd { kAnswered, kDeadline, kTooMuch, kCancelled };
 
 // Sends both pieces and collects the answer, whichever way is open.
 TalkEnd Talk(int socket, std::span<const uint8_t> head,
              std::span<const uint8_t> body, Clock::time_point deadline,
-             std::vector<uint8_t>* answer) {
+             const ExecutionContext& context, std::vector<uint8_t>* answer) {
   bool sending = true;
   while (true) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
     if (left.count() <= 0) return TalkEnd::kDeadline;
+    if (context.Cancelled()) return TalkEnd::kCancelled;
     pollfd poll_fd{socket, static_cast<short>(POLLIN | (sending ? POLLOUT : 0)),
                    0};
-    const auto timeout = std::min<int64_t>(left.count(), 60'000);
+    const auto timeout = std::min<int64_t>(left.count(), kStepMilliseconds);
     if (poll(&poll_fd, 1, static_cast<int>(timeout)) <= 0) continue;
     if (sending && (poll_fd.revents & POLLOUT)) {
       std::span<const uint8_t>& piece = head.empty() ? body : head;
@@ -205,7 +208,8 @@ Error DescribeEnd(int status, const DecoderOptions& options,
 template <class Parse>
 auto RunHelper(const DecoderOptions& options, const Subject& subject,
                std::span<const uint8_t> head, std::span<const uint8_t> body,
-               const Parse& parse, DecodeCounts& counts) ->
+               const Parse& parse, const ExecutionContext& context,
+               DecodeCounts& counts) ->
     typename decltype(parse(body))::value_type {
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -231,12 +235,14 @@ auto RunHelper(const DecoderOptions& options, const Subject& subject,
   theirs.Close();
 
   std::vector<uint8_t> bytes;
-  switch (Talk(ours.get(), head, body, deadline, &bytes)) {
+  switch (Talk(ours.get(), head, body, deadline, context, &bytes)) {
     case TalkEnd::kDeadline:
       ++counts.timed_out;
       return MakeInputError(
           subject,
           fmt::format("the decoder gave up after {:.3g} s", options.deadline));
+    case TalkEnd::kCancelled:
+      return Error{ErrorCode::kCancelled, "The decoding was cancelled."};
     case TalkEnd::kTooMuch:
       ++counts.crashed;
       return MakeInputError(
@@ -265,7 +271,8 @@ Decoder::Decoder(DecoderOptions options) : options_(std::move(options)) {
 }
 
 Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
-                                    const DecodeRequest& request) const {
+                                    const DecodeRequest& request,
+                                    const ExecutionContext& context) const {
   GRASPDB_EXPECTS(!request.metres_per_unit ||
                   (std::isfinite(*request.metres_per_unit) &&
                    *request.metres_per_unit > 0.0));
@@ -278,7 +285,7 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
   }
   DecodeCounts counts;
   auto result = RunHelper(options_, kMesh, EncodeRequest(request), bytes,
-                          ParseAnswer, counts);
+                          ParseAnswer, context, counts);
   Add(counts);
   GRASPDB_TRY(answer, std::move(result));
   const MassProperties mass = CalcMassProperties(answer.mesh_O);
@@ -291,7 +298,8 @@ Result<DecodedMesh> Decoder::Decode(std::span<const uint8_t> bytes,
                      answer.seconds};
 }
 
-Result<HandTree> Decoder::DecodeUrdf(const std::string& urdf) const {
+Result<HandTree> Decoder::DecodeUrdf(const std::string& urdf,
+                                     const ExecutionContext& context) const {
   if (urdf.size() > kMostUrdfBytes) {
     return Error{ErrorCode::kTooLarge,
                  fmt::format("the URDF has {} bytes; the limit is {}",
@@ -302,7 +310,7 @@ Result<HandTree> Decoder::DecodeUrdf(const std::string& urdf) const {
   auto tree =
       RunHelper(options_, kUrdf, EncodeUrdfRequest(),
                 {reinterpret_cast<const uint8_t*>(urdf.data()), urdf.size()},
-                ParseHandAnswer, counts);
+                ParseHandAnswer, context, counts);
   Add(counts);
   return tree;
 }
@@ -317,7 +325,7 @@ Result<std::string> Decoder::Check() const {
   request.format = MeshFormat::kObj;
   DecodeCounts of_no_account;
   auto answer = RunHelper(options_, kMesh, EncodeRequest(request), bytes,
-                          ParseAnswer, of_no_account);
+                          ParseAnswer, ExecutionContext(), of_no_account);
   if (answer) return std::move(answer->confinement);
   Error error = answer.error();
   error.code = ErrorCode::kInternal;

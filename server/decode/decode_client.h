@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/geometry/triangle_mesh.h"
 #include "engine/hand/hand_tree.h"
@@ -53,17 +54,21 @@ class Decoder {
      size cannot be that of a graspable object, or the helper crashed, ran out
      of memory or missed the deadline on them.
    @retval kTooLarge over one of request.limits.
+   @retval kCancelled as soon as the context is.
    @retval kInternal when the helper cannot be started or confined.
    @pre metres_per_unit is positive and finite, work_triangles >= 4. */
   Result<DecodedMesh> Decode(std::span<const uint8_t> bytes,
-                             const DecodeRequest& request) const;
+                             const DecodeRequest& request,
+                             const ExecutionContext& context = {}) const;
 
   /** What a URDF says of a hand, see ReadUrdf().
    @retval kUnusableInput when it says nothing that a hand can be, or the helper
      crashed, ran out of memory or missed the deadline on it.
    @retval kTooLarge over 1 MiB.
+   @retval kCancelled as soon as the context is.
    @retval kInternal when the helper cannot be started or confined. */
-  Result<HandTree> DecodeUrdf(const std::string& urdf) const;
+  Result<HandTree> DecodeUrdf(const std::string& urdf,
+                              const ExecutionContext& context = {}) const;
 
   /** Decodes a small solid: for a server to call before it starts to serve.
    @returns how the helper is confined: "landlock and seccomp", "seccomp" (the

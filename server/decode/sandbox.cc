@@ -36,8 +36,8 @@ Error MakeError(const std::string& what, int error_number) {
   return Error{ErrorCode::kInternal,
                "the mesh decoder cannot be confined: " + what + ": " +
                    std::strerror(error_number),
-               "Run on a kernel with seccomp, or allow decoding without a "
-               "sandbox for files that you trust."};
+               "Run on a kernel with seccomp, or decode files that you trust "
+               "without a sandbox: --allow-unsandboxed."};
 }
 
 Result<void> LimitResources(const SandboxLimits& limits) {

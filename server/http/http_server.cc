@@ -5,18 +5,22 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <mutex>
 #include <random>
+#include <set>
 #include <stop_token>
 #include <utility>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "server/http/body_budget.h"
 #include "server/http/connection.h"
+#include "server/http/log_line.h"
 #include "server/http/multipart.h"
 #include "server/http/problem.h"
 #include "server/http/target.h"
@@ -101,25 +105,6 @@ std::string MakeRequestId() {
   return fmt::format("{:08x}-{:08x}", run, ++count);
 }
 
-/** Text for a log line: printable ASCII without quotes, not too long. */
-std::string ForLog(std::string_view text) {
-  constexpr size_t kMost = 200;
-  std::string out;
-  for (const char c : text.substr(0, kMost)) {
-    out += c >= 0x20 && c < 0x7F && c != '"' ? c : '?';
-  }
-  return out;
-}
-
-std::string MakeTimestamp() {
-  const auto now = std::chrono::floor<std::chrono::milliseconds>(
-      std::chrono::system_clock::now());
-  const auto milliseconds = now.time_since_epoch().count() % 1000;
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
-                     milliseconds);
-}
-
 double CalcMilliseconds(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin)
       .count();
@@ -129,7 +114,11 @@ double CalcMilliseconds(Clock::time_point begin) {
 
 struct HttpServer::Impl : httplib::Server {
   Impl(Router router_in, HttpServerOptions options_in)
-      : router(std::move(router_in)), options(std::move(options_in)) {}
+      : router(std::move(router_in)),
+        options(std::move(options_in)),
+        budget(std::max(options.limits.max_held_bytes,
+                        2 * static_cast<size_t>(std::max<int64_t>(
+                                0, options.limits.max_upload_bytes)))) {}
   ~Impl() override {
     close(stop_fd);
     // The library closes the socket at the end of serving, and only then.
@@ -141,6 +130,8 @@ struct HttpServer::Impl : httplib::Server {
 
   Result<int> Bind(const std::string& on_host, int on_port);
   void RequestStop();
+  void CutConnections();
+  void ServeConnection(socket_t socket);
   void ServeExchange(Connection& connection, Exchange& exchange);
   void Answer(const httplib::ContentReader* reader, httplib::Response& out);
   static void Stream(HttpResponse response, Exchange& exchange,
@@ -159,6 +150,10 @@ struct HttpServer::Impl : httplib::Server {
 
   Router router;
   HttpServerOptions options;
+  BodyBudget budget;
+  std::mutex sockets_mutex;
+  std::set<socket_t> sockets;  // Of the connections that are served.
+  bool cut{false};             // Those, and all that come, end.
   std::string host;
   int port{0};
   bool bound_unserved{false};
@@ -195,8 +190,31 @@ void HttpServer::Impl::RequestStop() {
   shutdown(svr_sock_, SHUT_RDWR);
 }
 
+void HttpServer::Impl::CutConnections() {
+  const std::lock_guard lock(sockets_mutex);
+  cut = true;
+  // Whoever reads or writes there is told that the client has gone.
+  for (const socket_t socket : sockets) shutdown(socket, SHUT_RDWR);
+}
+
 bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
   fcntl(socket, F_SETFD, FD_CLOEXEC);
+  {
+    const std::lock_guard lock(sockets_mutex);
+    sockets.insert(socket);
+    if (cut) shutdown(socket, SHUT_RDWR);
+  }
+  ServeConnection(socket);
+  {
+    const std::lock_guard lock(sockets_mutex);
+    sockets.erase(socket);
+  }
+  shutdown(socket, SHUT_RDWR);
+  close(socket);
+  return true;
+}
+
+void HttpServer::Impl::ServeConnection(socket_t socket) {
   Connection connection(socket, stop_fd, options.limits);
   for (size_t count = 1;; ++count) {
     auto head = connection.ReadHead();
@@ -221,9 +239,6 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
       break;
     }
   }
-  shutdown(socket, SHUT_RDWR);
-  close(socket);
-  return true;
 }
 
 void HttpServer::Impl::ServeExchange(Connection& connection,
@@ -245,13 +260,16 @@ void HttpServer::Impl::ServeExchange(Connection& connection,
                           exchange.status,
                           CalcMilliseconds(exchange.begin) * 1e-3});
   }
-  Log(fmt::format(
-      "time={} level=info event=request id={} method={} "
-      "target=\"{}\" status={} in={} out={} ms={:.1f}{}",
-      MakeTimestamp(), exchange.id, ForLog(exchange.head.method),
-      ForLog(exchange.head.target), exchange.status, exchange.bytes_in,
-      exchange.bytes_out, CalcMilliseconds(exchange.begin),
-      sent ? "" : " unsent=true"));
+  std::vector<std::pair<std::string_view, std::string>> fields{
+      {"id", exchange.id},
+      {"method", exchange.head.method},
+      {"target", exchange.head.target},
+      {"status", fmt::to_string(exchange.status)},
+      {"in", fmt::to_string(exchange.bytes_in)},
+      {"out", fmt::to_string(exchange.bytes_out)},
+      {"ms", fmt::format("{:.1f}", CalcMilliseconds(exchange.begin))}};
+  if (!sent) fields.emplace_back("unsent", "true");
+  Log(MakeLogLine("info", "request", fields));
 }
 
 void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
@@ -348,24 +366,28 @@ HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
                                       const graspdb::Route& route,
                                       HttpRequest& request,
                                       const httplib::ContentReader* reader) {
-  std::string cause = "unknown exception";
+  Error error{ErrorCode::kInternal, "unknown exception", ""};
   try {
     if (auto refusal = ReadBody(exchange, route.body, request, reader)) {
       return std::move(*refusal);
     }
     auto response = route.handler(request);
     if (response) return std::move(*response);
-    if (response.error().code != ErrorCode::kInternal) {
-      return MakeProblem(response.error(), request.id);
-    }
-    cause = response.error().message;
+    error = response.error();
   } catch (const std::exception& exception) {
-    cause = exception.what();
+    error.message = exception.what();
   } catch (...) {
   }
-  Log(fmt::format("time={} level=error event=internal id={} cause=\"{}\"",
-                  MakeTimestamp(), request.id, ForLog(cause)));
-  return MakeProblem(Error{ErrorCode::kInternal, "", ""}, request.id);
+  if (error.code == ErrorCode::kCancelled && request.stop.stop_requested()) {
+    error = {ErrorCode::kOverloaded, "The server is stopping.",
+             "send it again when it is back"};
+  }
+  const bool internal = error.code == ErrorCode::kInternal;
+  if (internal || error.code == ErrorCode::kStorage) {
+    Log(MakeLogLine("error", internal ? "internal" : "storage",
+                    {{"id", request.id}, {"cause", error.message}}));
+  }
+  return MakeProblem(error, request.id);
 }
 
 std::optional<HttpResponse> HttpServer::Impl::ReadBody(
@@ -397,11 +419,18 @@ std::optional<HttpResponse> HttpServer::Impl::ReadBody(
           ? options.limits.max_json_bytes
           : static_cast<size_t>(options.limits.max_upload_bytes);
   bool too_large = head.content_length > limit;
+  bool too_many = false;
+  std::shared_ptr<HeldBody> held;
+  if (kind == BodyKind::kUpload) held = std::make_shared<HeldBody>(budget);
+  request.held = held;
   const bool complete = !too_large && reader != nullptr &&
                         (*reader)([&](const char* bytes, size_t size) {
-                          too_large = request.body.size() + size > limit;
-                          if (!too_large) request.body.append(bytes, size);
-                          return !too_large;
+                          const size_t whole = request.body.size() + size;
+                          too_large = whole > limit;
+                          too_many = held && !held->Grow(whole);
+                          if (too_large || too_many) return false;
+                          request.body.append(bytes, size);
+                          return true;
                         });
   exchange.bytes_in = request.body.size();
   if (too_large) {
@@ -410,6 +439,12 @@ std::optional<HttpResponse> HttpServer::Impl::ReadBody(
                         "Send a smaller file, or ask the operator to raise "
                         "the limit."},
                        request.id);
+  }
+  if (too_many) {
+    return MakeProblem(
+        {ErrorCode::kOverloaded, "Too many large files are being sent at once.",
+         "Send it again in a moment."},
+        request.id);
   }
   if (!complete) {
     return exchange.connection->timed_out()
@@ -485,13 +520,14 @@ Result<void> HttpServer::Serve() {
     server.listen_after_bind();
     if (server.stop.stop_requested()) break;
     // The library gives up when accept() fails once, say for want of memory.
-    server.Log(
-        fmt::format("time={} level=error event=listen_again", MakeTimestamp()));
+    server.Log(MakeLogLine("error", "listen_again"));
     GRASPDB_TRY_VOID(server.Bind(server.host, server.port));
   }
   return {};
 }
 
 void HttpServer::Stop() { impl_->RequestStop(); }
+
+void HttpServer::CutConnections() { impl_->CutConnections(); }
 
 }  // namespace graspdb

@@ -53,6 +53,9 @@ class HttpServer {
   /** Refuses new connections and lets requests in flight end; HttpRequest::stop
    asks handlers that wait to answer now. Any thread, any time. */
   void Stop();
+  /** Ends every connection at once, however slow its client: for when those in
+   flight have had time enough. Any thread, after Stop(). */
+  void CutConnections();
 
  private:
   struct Impl;

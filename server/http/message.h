@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -36,7 +37,15 @@ struct HttpRequest {
   std::map<std::string, std::string> headers;  ///< Names in lower case.
   std::string body;                            ///< Empty for multipart bodies.
   std::vector<FormPart> files;  ///< Parts of a multipart body with a file.
+  std::shared_ptr<void> held;   ///< What body and files take of a budget.
   std::stop_token stop;         ///< Requested when the server shuts down.
+
+  /** Frees body and files: for who goes on for long without them. */
+  void DropBody() {
+    std::string().swap(body);
+    std::vector<FormPart>().swap(files);
+    held.reset();
+  }
 
   /** @returns The field's value, or an empty view. `name` in lower case. */
   std::string_view FindHeader(const std::string& name) const {

@@ -122,6 +122,13 @@ HttpResponse MakeProblem(const Error& error, const std::string& request_id) {
                   "An unexpected error was logged under this request id.",
                   "Report the request id with what you did.", "", request_id);
   }
+  if (error.code == ErrorCode::kStorage) {
+    // Its message may name files of the server.
+    return Render(KindOf(error.code),
+                  "The database, or what is beside it, cannot be written or "
+                  "read now; why was logged under this request id.",
+                  error.hint, "", request_id);
+  }
   return Render(KindOf(error.code), error.message, error.hint, error.field,
                 request_id);
 }

@@ -17,7 +17,7 @@ enum class BodyKind {
   kUpload,  ///< A file: raw bytes, or multipart/form-data.
 };
 
-using HttpHandler = std::function<Result<HttpResponse>(const HttpRequest&)>;
+using HttpHandler = std::function<Result<HttpResponse>(HttpRequest&)>;
 
 /** One operation: a method on a path pattern. */
 struct Route {

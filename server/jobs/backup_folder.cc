@@ -50,7 +50,8 @@ BackupFolder::BackupFolder(std::string path, int most)
   GRASPDB_EXPECTS(most_ >= 1);
 }
 
-Result<StoredBackup> BackupFolder::Add(const Store& store) {
+Result<StoredBackup> BackupFolder::Add(const Store& store,
+                                       const ExecutionContext& context) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) {
     return Error{ErrorCode::kOverloaded, "A backup is being made already.",
@@ -63,7 +64,7 @@ Result<StoredBackup> BackupFolder::Add(const Store& store) {
   backup.created_at = FormatNow();
   backup.name = MakeName(backup.created_at);
   const std::string file = fs::path(path_) / backup.name;
-  GRASPDB_TRY_VOID(store.WriteBackup(file));
+  GRASPDB_TRY_VOID(store.WriteBackup(file, context));
   GRASPDB_TRY(sha256, CalcFileSha256(file));
   GRASPDB_TRY_VOID(
       WriteFileBytes(file + kChecksum, sha256 + "  " + backup.name + "\n"));

@@ -20,8 +20,10 @@ class BackupFolder {
 
   /** Makes one and removes the oldest beyond `most`.
    @retval kOverloaded while one is being made.
-   @retval kStorage when there is no room. */
-  Result<StoredBackup> Add(const Store& store);
+   @retval kStorage when there is no room.
+   @retval kCancelled soon after the context is. */
+  Result<StoredBackup> Add(const Store& store,
+                           const ExecutionContext& context = {});
   /** Newest first. */
   Result<std::vector<StoredBackup>> List() const;
 

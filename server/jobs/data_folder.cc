@@ -136,7 +136,7 @@ Result<std::vector<StoredGraspSpace>> Populate(Service& service,
   const fs::path root(order.folder);
   for (const fs::path& folder : FindFoldersWith(root / "hands", "hand.json")) {
     GRASPDB_TRY(files, ReadHandFolder(folder));
-    const auto hand = service.AddHand(files);
+    const auto hand = service.AddHand(files, context);
     if (!hand) return InFile(folder, hand.error());
     context.ReportProgress("hand " + hand->hand.name, 0.0);
   }

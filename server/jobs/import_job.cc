@@ -103,7 +103,8 @@ Result<ImportResult> StoreSegmentation(Store& store, const StoredObject& object,
 
 }  // namespace
 
-Result<DecodedMesh> Service::DecodeUpload(const ImportOrder& order) const {
+Result<DecodedMesh> Service::DecodeUpload(
+    const ImportOrder& order, const ExecutionContext& context) const {
   DecodeRequest request;
   if (!order.format.empty()) {
     GRASPDB_TRY(format, ParseMeshFormat(order.format));
@@ -118,7 +119,7 @@ Result<DecodedMesh> Service::DecodeUpload(const ImportOrder& order) const {
   request.limits.max_triangles = options_.max_triangles;
   return decoder_->Decode({reinterpret_cast<const uint8_t*>(order.bytes.data()),
                            order.bytes.size()},
-                          request);
+                          request, context);
 }
 
 Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
@@ -179,7 +180,7 @@ Result<ImportResult> Service::ImportObject(const ImportOrder& order,
 Result<ImportResult> Service::ImportNewObject(const ImportOrder& order,
                                               ExecutionContext& context) {
   context.ReportProgress("decode", 0.0);
-  GRASPDB_TRY(decoded, DecodeUpload(order));
+  GRASPDB_TRY(decoded, DecodeUpload(order, context));
   NewObject object;
   object.record = DescribeObject(order, decoded);
   object.bytes = order.bytes;

@@ -1,6 +1,5 @@
 #include "server/jobs/job_runner.h"
 
-#include <cstdio>
 #include <exception>
 #include <set>
 
@@ -26,7 +25,7 @@ constexpr std::chrono::seconds kStoreRetry{2};
 JobRunner::JobRunner(Service& service) : service_(service) {}
 JobRunner::~JobRunner() { Stop(); }
 
-Result<void> JobRunner::Start() {
+Result<void> JobRunner::Start(JobObserver observer) {
   GRASPDB_EXPECTS(workers_.empty());
   const std::string& database = service_.store().path();
   auto lock = FileLock::Acquire(database + ".lock");
@@ -37,6 +36,7 @@ Result<void> JobRunner::Start() {
   }
   if (!lock) return lock.error();
   lock_ = *std::move(lock);
+  observer_ = std::move(observer);
   // Nobody works on what is running now: who did has died.
   const auto requeued =
       service_.store().RequeueRunningJobs(/* crashed = */ true);
@@ -62,12 +62,21 @@ void JobRunner::Stop() {
   if (const auto requeued =
           service_.store().RequeueRunningJobs(/* crashed = */ false);
       !requeued) {
-    std::fprintf(stderr, "graspdb: %s\n", requeued.error().message.c_str());
+    TellFailure("", requeued.error().message);
   }
   lock_.Release();
 }
 
 void JobRunner::Wake() { Notify(); }
+
+void JobRunner::TellEnd(const StoredJob& job, double seconds) const {
+  if (observer_.on_end) observer_.on_end(job, seconds);
+}
+
+void JobRunner::TellFailure(const std::string& job_id,
+                            const std::string& what) const {
+  if (observer_.on_failure) observer_.on_failure(job_id, what);
+}
 
 void JobRunner::Notify() {
   {
@@ -116,7 +125,7 @@ Result<StoredJob> JobRunner::Cancel(const std::string& id) {
   job.state = JobState::kCancelled;
   GRASPDB_TRY(cancelled, service_.store().FinishJob(job));
   // It may have come to life meanwhile.
-  CancelLive(id);
+  if (!CancelLive(id)) TellEnd(cancelled, 0.0);
   Notify();
   return cancelled;
 }
@@ -151,7 +160,7 @@ void JobRunner::Work(bool slow) {
       continue;
     }
     if (!claimed) {
-      std::fprintf(stderr, "graspdb: %s\n", claimed.error().message.c_str());
+      TellFailure("", claimed.error().message);
     }
     // Once in a while without a call, for when the store has failed.
     std::unique_lock lock(mutex_);
@@ -162,6 +171,7 @@ void JobRunner::Work(bool slow) {
 
 void JobRunner::Run(StoredJob job) {
   const std::string id = job.id;
+  const auto begin = Clock::now();
   const auto context = std::make_shared<ExecutionContext>(
       [this, id](const std::string& stage, double share) {
         {
@@ -183,6 +193,7 @@ void JobRunner::Run(StoredJob job) {
   const Result<std::string> result = context->TimedOut()
                                          ? Result<std::string>(MakeTimedOut())
                                          : Execute(job, *context);
+  const std::chrono::duration<double> seconds = Clock::now() - begin;
   bool cancelled_by_user = false;
   bool interrupted = false;
   {
@@ -207,7 +218,13 @@ void JobRunner::Run(StoredJob job) {
         cancelled && context->TimedOut() ? MakeTimedOut() : result.error();
   }
   // A job that the end of the server interrupted stays as it is, to be queued.
-  if (!(cancelled && interrupted && !cancelled_by_user)) Finish(job);
+  std::optional<StoredJob> written;
+  if (!(cancelled && interrupted && !cancelled_by_user)) written = Finish(job);
+  if (!written) {
+    job.state = JobState::kQueued;
+    job.error.reset();
+  }
+  TellEnd(written.value_or(job), seconds.count());
   {
     const std::lock_guard lock(mutex_);
     live_.erase(id);
@@ -215,21 +232,20 @@ void JobRunner::Run(StoredJob job) {
   Notify();
 }
 
-void JobRunner::Finish(const StoredJob& job) {
+std::optional<StoredJob> JobRunner::Finish(const StoredJob& job) {
   bool told = false;
   while (true) {
     const auto done = service_.store().FinishJob(job);
-    if (done) return;
+    if (done) return *done;
     if (!told) {
-      std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),
-                   done.error().message.c_str());
+      TellFailure(job.id, done.error().message);
     }
     told = true;
     // A full disk may have room again. The next server does it all again.
     std::unique_lock lock(mutex_);
     if (done.error().code != ErrorCode::kStorage ||
         changed_.wait_for(lock, kStoreRetry, [this] { return stopping_; })) {
-      return;
+      return std::nullopt;
     }
   }
 }
@@ -240,7 +256,7 @@ Result<std::string> JobRunner::Execute(const StoredJob& job,
     GRASPDB_TRY(payload, service_.store().ReadJobPayload(job.id));
     switch (job.kind) {
       case JobKind::kImport:
-        return ExecuteImport(job, payload, context);
+        return ExecuteImport(job, std::move(payload), context);
       case JobKind::kLearn: {
         GRASPDB_TRY(order, StoredLearnOrderFromJson(job.request));
         const auto spaces = service_.LearnObject(order, context);
@@ -262,18 +278,17 @@ Result<std::string> JobRunner::Execute(const StoredJob& job,
       }
     }
   } catch (const std::exception& exception) {
-    std::fprintf(stderr, "graspdb: job %s: %s\n", job.id.c_str(),
-                 exception.what());
+    TellFailure(job.id, exception.what());
     return Error{ErrorCode::kInternal, exception.what()};
   }
   return Error{ErrorCode::kInternal, "The job is of no known kind."};
 }
 
 Result<std::string> JobRunner::ExecuteImport(const StoredJob& job,
-                                             const std::string& payload,
+                                             std::string payload,
                                              ExecutionContext& context) {
-  GRASPDB_TRY(order, StoredImportOrderFromJson(job.request));
-  order.bytes = payload;
+  GRASPDB_TRY(order,
+              StoredImportOrderFromJson(job.request, std::move(payload)));
   const bool learn = order.role == ObjectRole::kExample && order.learn;
   SubContext importing(context, "import", 0.0, learn ? kImportShare : 1.0);
   GRASPDB_TRY(imported, service_.ImportObject(order, importing.context()));
@@ -291,8 +306,8 @@ Result<std::string> JobRunner::ExecuteImport(const StoredJob& job,
 Result<std::string> JobRunner::ExecuteTransfer(const StoredJob& job,
                                                std::string payload,
                                                ExecutionContext& context) {
-  GRASPDB_TRY(order, StoredTransferOrderFromJson(job.request));
-  order.mesh.bytes = std::move(payload);
+  GRASPDB_TRY(order,
+              StoredTransferOrderFromJson(job.request, std::move(payload)));
   GRASPDB_TRY(hand, service_.FindHandModel(order.hand));
   GRASPDB_TRY(answer, service_.TransferGrasps(
                           order, context, [&](const StoredGrasp& grasp) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "server/files.h"
+#include "server/jobs/job_observer.h"
 #include "server/jobs/live_grasp.h"
 #include "server/records.h"
 
@@ -33,7 +35,7 @@ class JobRunner {
   JobRunner& operator=(const JobRunner&) = delete;
 
   /** @retval kConflict while another process works on the database's jobs. */
-  Result<void> Start();
+  Result<void> Start(JobObserver observer);
   void Stop();
   /** There is a new job. */
   void Wake();
@@ -70,18 +72,21 @@ class JobRunner {
   // Whether it runs here.
   bool CancelLive(const std::string& id);
   // Writes what became of it, as soon as that can be written.
-  void Finish(const StoredJob& job);
+  // @returns the row, or nothing when the server stopped before that.
+  std::optional<StoredJob> Finish(const StoredJob& job);
   // The id of what the job made.
   Result<std::string> Execute(const StoredJob& job, ExecutionContext& context);
-  Result<std::string> ExecuteImport(const StoredJob& job,
-                                    const std::string& payload,
+  Result<std::string> ExecuteImport(const StoredJob& job, std::string payload,
                                     ExecutionContext& context);
   Result<std::string> ExecuteTransfer(const StoredJob& job, std::string payload,
                                       ExecutionContext& context);
+  void TellEnd(const StoredJob& job, double seconds) const;
+  void TellFailure(const std::string& job_id, const std::string& what) const;
   // Something that waiters may wait for has changed.
   void Notify();
 
   Service& service_;
+  JobObserver observer_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   uint64_t changes_{0};

@@ -25,17 +25,11 @@ struct Candidate {
 }  // namespace
 
 Result<ShapeDescriptor> Service::FindDescriptor(const std::string& id) const {
-  {
-    const std::lock_guard lock(descriptors_mutex_);
-    if (const auto known = descriptors_.find(id); known != descriptors_.end()) {
-      return known->second;
-    }
-  }
+  if (const auto known = descriptors_.Find(id)) return *known;
   GRASPDB_TRY(meshes, store_->ReadObjectMeshes(id));
   const ShapeDescriptor descriptor =
       CalcShapeDescriptor(SampleSurface(meshes.work, kSamples, kSeed));
-  const std::lock_guard lock(descriptors_mutex_);
-  descriptors_.emplace(id, descriptor);
+  descriptors_.Insert(id, descriptor, sizeof(descriptor));
   return descriptor;
 }
 
@@ -43,7 +37,7 @@ Result<std::vector<SimilarObject>> Service::SearchByShape(
     const ImportOrder& order, const ShapeQuery& query,
     ExecutionContext& context) {
   GRASPDB_TRY(checked, CheckImport(order));
-  GRASPDB_TRY(decoded, DecodeUpload(checked));
+  GRASPDB_TRY(decoded, DecodeUpload(checked, context));
   const SurfaceSamples samples_N =
       SampleSurface(decoded.work_O, kSamples, kSeed);
   const ShapeDescriptor descriptor = CalcShapeDescriptor(samples_N);

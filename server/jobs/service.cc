@@ -21,6 +21,17 @@
 namespace graspdb {
 namespace {
 
+// About what a hand takes: so many bytes for each of its triangles.
+int64_t CalcHandBytes(const HandModel& hand, int64_t bytes_per_triangle) {
+  int64_t triangles = 0;
+  for (const HandLink& link : hand.links()) {
+    for (const TriangleMesh& piece : link.pieces_L) {
+      triangles += piece.num_triangles();
+    }
+  }
+  return (64 << 10) + bytes_per_triangle * triangles;
+}
+
 // Names that users choose become parts of paths: [a-z0-9][a-z0-9_-]{0,63}.
 Result<void> CheckName(const std::string& name, const std::string& field) {
   const auto is_plain = [](char c) {
@@ -71,10 +82,11 @@ std::string CalcHandSha256(const HandFiles& files) {
   return CalcSha256(content);
 }
 
-Result<std::shared_ptr<const HandModel>> BuildHand(const StoredHand& hand,
-                                                   const Decoder& decoder) {
+Result<std::shared_ptr<const HandModel>> BuildHand(
+    const StoredHand& hand, const Decoder& decoder,
+    const ExecutionContext& context) {
   GRASPDB_TRY(file, HandFileFromJson(hand.annotations));
-  GRASPDB_TRY(tree, decoder.DecodeUrdf(hand.urdf));
+  GRASPDB_TRY(tree, decoder.DecodeUrdf(hand.urdf, context));
   const auto load = [&](const std::string& name) -> Result<TriangleMesh> {
     for (const auto& [known, mesh] : hand.meshes) {
       if (CutFolders(known) == CutFolders(name)) return mesh;
@@ -140,7 +152,8 @@ Result<StoredCategory> Service::UpdateCategory(const StoredCategory& category) {
   return store_->UpdateCategory(category);
 }
 
-Result<AddedHand> Service::AddHand(const HandFiles& files) {
+Result<AddedHand> Service::AddHand(const HandFiles& files,
+                                   const ExecutionContext& context) {
   GRASPDB_TRY(file, HandFileFromJson(files.annotations));
   StoredHand hand;
   hand.name = file.annotations.name;
@@ -160,8 +173,8 @@ Result<AddedHand> Service::AddHand(const HandFiles& files) {
     request.limits.max_bytes = options_.max_mesh_bytes;
     request.limits.max_triangles = kMostPieceTriangles;
     auto decoded = decoder_->Decode(
-        {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
-        request);
+        {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, request,
+        context);
     if (!decoded) {
       Error error = decoded.error();
       error.message = name + ": " + error.message;
@@ -169,7 +182,7 @@ Result<AddedHand> Service::AddHand(const HandFiles& files) {
     }
     hand.meshes.emplace_back(name, std::move(decoded->mesh_O));
   }
-  if (const auto model = BuildHand(hand, *decoder_); !model) {
+  if (const auto model = BuildHand(hand, *decoder_, context); !model) {
     return model.error();
   }
   GRASPDB_TRY(stored, store_->InsertHand(hand));
@@ -178,31 +191,20 @@ Result<AddedHand> Service::AddHand(const HandFiles& files) {
 
 Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
     const std::string& name) const {
-  {
-    const std::lock_guard lock(hands_mutex_);
-    if (const auto known = hands_.find(name); known != hands_.end()) {
-      return known->second;
-    }
-  }
+  if (auto known = hands_.Find(name)) return *std::move(known);
   GRASPDB_TRY(hand, store_->FindHand(name));
-  GRASPDB_TRY(model, BuildHand(hand, *decoder_));
-  const std::lock_guard lock(hands_mutex_);
-  return hands_.emplace(name, model).first->second;
+  GRASPDB_TRY(model, BuildHand(hand, *decoder_, ExecutionContext()));
+  hands_.Insert(name, model, CalcHandBytes(*model, 100));
+  return std::move(model);
 }
 
 Result<std::shared_ptr<const HandShape>> Service::FindHandShape(
     const std::string& name) const {
-  {
-    const std::lock_guard lock(hands_mutex_);
-    if (const auto known = hand_shapes_.find(name);
-        known != hand_shapes_.end()) {
-      return known->second;
-    }
-  }
+  if (auto known = hand_shapes_.Find(name)) return *std::move(known);
   GRASPDB_TRY(model, FindHandModel(name));
   auto shape = std::make_shared<const HandShape>(model);
-  const std::lock_guard lock(hands_mutex_);
-  return hand_shapes_.emplace(name, std::move(shape)).first->second;
+  hand_shapes_.Insert(name, shape, CalcHandBytes(*model, 1000));
+  return std::shared_ptr<const HandShape>(std::move(shape));
 }
 
 Result<std::shared_ptr<const Solid>> Service::FindWholeSolid(
@@ -284,7 +286,8 @@ Result<StoredJob> Service::SubmitImport(const ImportOrder& order,
                                         const JobTerms& terms) {
   GRASPDB_TRY(checked, CheckImport(order));
   const bool slow = checked.role == ObjectRole::kExample && checked.learn;
-  return Submit(JobKind::kImport, slow, ToJson(checked), checked.bytes, terms);
+  return Submit(JobKind::kImport, slow, ToJson(checked), MakePayload(checked),
+                terms);
 }
 
 Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
@@ -296,8 +299,8 @@ Result<StoredJob> Service::SubmitLearn(const LearnOrder& order,
 Result<StoredJob> Service::SubmitTransfer(const TransferOrder& order,
                                           const JobTerms& terms) {
   GRASPDB_TRY(checked, CheckTransfer(order));
-  return Submit(JobKind::kTransfer, false, ToJson(checked), checked.mesh.bytes,
-                terms);
+  return Submit(JobKind::kTransfer, false, ToJson(checked),
+                MakePayload(checked.mesh), terms);
 }
 
 Result<StoredJob> Service::SubmitSegment(const SegmentOrder& order,
@@ -361,7 +364,9 @@ Result<StoredJob> Service::CancelJob(const std::string& id) {
   return runner_->Cancel(id);
 }
 
-Result<void> Service::StartWorkers() { return runner_->Start(); }
+Result<void> Service::StartWorkers(JobObserver observer) {
+  return runner_->Start(std::move(observer));
+}
 void Service::StopWorkers() { runner_->Stop(); }
 
 }  // namespace graspdb

@@ -18,6 +18,7 @@
 #include "engine/simulation/grasp_simulator.h"
 #include "server/files.h"
 #include "server/jobs/backup_folder.h"
+#include "server/jobs/job_observer.h"
 #include "server/jobs/live_grasp.h"
 #include "server/lru_cache.h"
 #include "server/orders.h"
@@ -114,7 +115,8 @@ class Service {
    stores it; the same files a second time change nothing.
    @retval kConflict when another hand has its name.
    @retval kInvalidArgument, kUnusableInput, kTooLarge naming what is wrong. */
-  Result<AddedHand> AddHand(const HandFiles& files);
+  Result<AddedHand> AddHand(const HandFiles& files,
+                            const ExecutionContext& context);
   /** The built hand, shared by all callers. */
   Result<std::shared_ptr<const HandModel>> FindHandModel(
       const std::string& name) const;
@@ -208,7 +210,7 @@ class Service {
   /** Queues what a dead process left running and starts the workers: one for
    all that learns, one for the rest, so that no transfer waits for minutes.
    Only a server calls this. */
-  Result<void> StartWorkers();
+  Result<void> StartWorkers(JobObserver observer = {});
   /** Running jobs go back into the queue; returns when the workers have ended.
    Safe to call twice. */
   void StopWorkers();
@@ -216,8 +218,11 @@ class Service {
  private:
   friend class JobRunner;
   static constexpr int64_t kMostSolidBytes = 64 << 20;
+  static constexpr int64_t kMostHandBytes = 64 << 20;
+  static constexpr int64_t kMostDescriptorBytes = 64 << 20;
 
-  Result<DecodedMesh> DecodeUpload(const ImportOrder& order) const;
+  Result<DecodedMesh> DecodeUpload(const ImportOrder& order,
+                                   const ExecutionContext& context) const;
   // Of a whole object's working mesh.
   Result<std::shared_ptr<const Solid>> FindWholeSolid(const std::string& id);
   Result<ShapeDescriptor> FindDescriptor(const std::string& id) const;
@@ -240,13 +245,13 @@ class Service {
   std::unique_ptr<Decoder> decoder_;
   BackupFolder backups_;
   ServiceOptions options_;
-  mutable std::mutex hands_mutex_;
-  mutable std::map<std::string, std::shared_ptr<const HandModel>> hands_;
-  mutable std::map<std::string, std::shared_ptr<const HandShape>> hand_shapes_;
+  // A hand never changes.
+  mutable LruCache<std::shared_ptr<const HandModel>> hands_{kMostHandBytes};
+  mutable LruCache<std::shared_ptr<const HandShape>> hand_shapes_{
+      kMostHandBytes};
   // An object's mesh never changes.
   LruCache<std::shared_ptr<const Solid>> whole_solids_{kMostSolidBytes};
-  mutable std::mutex descriptors_mutex_;
-  mutable std::map<std::string, ShapeDescriptor> descriptors_;  // By object.
+  mutable LruCache<ShapeDescriptor> descriptors_{kMostDescriptorBytes};
   std::mutex keys_mutex_;
   std::set<std::string> held_keys_;
   std::unique_ptr<JobRunner> runner_;

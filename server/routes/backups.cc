@@ -16,7 +16,9 @@ Result<HttpResponse> ListBackups(Service& service, const HttpRequest& request) {
 Result<HttpResponse> PostBackup(Service& service, const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
-    GRASPDB_TRY(backup, service.backups().Add(service.store()));
+    RequestContext context(request);
+    GRASPDB_TRY(backup,
+                service.backups().Add(service.store(), context.context()));
     return MakeJsonResponse(201, ToJson(backup));
   });
 }

@@ -61,7 +61,7 @@ Result<HttpResponse> DeleteCategory(Service& service,
 
 /** Imports a mesh as an example and, unless learn=false, learns from it. */
 Result<HttpResponse> PostExample(Service& service, const RouteOptions& options,
-                                 const HttpRequest& request) {
+                                 HttpRequest& request) {
   QueryReader query(request.query);
   auto upload = ReadUpload(request, query, {"labels"});
   const auto name = query.Text("name");
@@ -83,6 +83,8 @@ Result<HttpResponse> PostExample(Service& service, const RouteOptions& options,
   }
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitImport(order, {idempotency.key(), deadline}));
+  order = {};
+  request.DropBody();
   return AnswerJob(service, *options.held_threads, request,
                    std::chrono::seconds(0), job, idempotency,
                    [&](const StoredJob& done) -> Result<HttpResponse> {
@@ -116,7 +118,7 @@ void AddCategoryRoutes(Router& router, Service& service,
          return DeleteCategory(service, request);
        }});
   router.Add({"POST", one + "/examples", BodyKind::kUpload,
-              [&service, options](const HttpRequest& request) {
+              [&service, options](HttpRequest& request) {
                 return PostExample(service, options, request);
               }});
 }

@@ -1,5 +1,5 @@
+#include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 
 #include <fmt/format.h>
@@ -74,8 +74,13 @@ Result<HttpResponse> MakeGraspsResponse(const Service& service,
 Result<std::vector<GraspOfHand>> PairWithHands(
     const Service& service, const std::vector<StoredGrasp>& grasps) {
   std::vector<GraspOfHand> pairs;
+  std::map<std::string, std::shared_ptr<const HandModel>> hands;
   for (const StoredGrasp& grasp : grasps) {
-    GRASPDB_TRY(hand, service.FindHandModel(grasp.hand));
+    auto& hand = hands[grasp.hand];
+    if (!hand) {
+      GRASPDB_TRY(found, service.FindHandModel(grasp.hand));
+      hand = std::move(found);
+    }
     pairs.push_back({&grasp, hand});
   }
   return pairs;
@@ -167,8 +172,7 @@ Result<HttpResponse> GetGrasp(const Service& service,
   return MakeGraspsResponse(service, {{&grasp, hand}}, format);
 }
 
-Result<HttpResponse> DrawGrasp(const Service& service,
-                               std::mutex& one_at_a_time,
+Result<HttpResponse> DrawGrasp(const Service& service, WorkSlots& slots,
                                const HttpRequest& request) {
   QueryReader query(request.query);
   View view;
@@ -196,7 +200,8 @@ Result<HttpResponse> DrawGrasp(const Service& service,
   }
   const auto scene =
       MakeGraspScene(meshes.canonical, meshes.canonical_labels, {posed});
-  const std::lock_guard lock(one_at_a_time);
+  const auto slot = slots.Take(request.stop);
+  if (!slot) return slot.error();
   const std::vector<uint8_t> png = EncodePng(RenderScene(scene, view));
   HttpResponse response;
   response.content_type = "image/png";
@@ -264,7 +269,7 @@ Result<void> CheckTransferOrder(const TransferOrder& order, bool has_mesh) {
 }
 
 Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
-                                const HttpRequest& request) {
+                                HttpRequest& request) {
   QueryReader query(request.query);
   const GraspFormat format = ReadFormat(query);
   const auto deadline = ReadDeadline(query);
@@ -274,6 +279,8 @@ Result<HttpResponse> PostGrasps(Service& service, const RouteOptions& options,
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job,
               service.SubmitTransfer(order, {idempotency.key(), deadline}));
+  order.mesh = {};
+  request.DropBody();
   return AnswerJob(
       service, *options.held_threads, request, options.default_wait, job,
       idempotency, [&](const StoredJob& done) -> Result<HttpResponse> {
@@ -311,19 +318,18 @@ void AddGraspRoutes(Router& router, Service& service,
          return ListGrasps(service, *texts, request);
        }});
   router.Add({"POST", "/v1/grasps", BodyKind::kUpload,
-              [&service, options](const HttpRequest& request) {
+              [&service, options](HttpRequest& request) {
                 return PostGrasps(service, options, request);
               }});
   router.Add({"GET", "/v1/grasps/{id}", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return GetGrasp(service, request);
               }});
-  // Drawing takes all cores: one picture after the other.
-  auto one_at_a_time = std::make_shared<std::mutex>();
-  router.Add({"GET", "/v1/grasps/{id}.png", BodyKind::kNone,
-              [&service, one_at_a_time](const HttpRequest& request) {
-                return DrawGrasp(service, *one_at_a_time, request);
-              }});
+  router.Add(
+      {"GET", "/v1/grasps/{id}.png", BodyKind::kNone,
+       [&service, slots = options.picture_slots](const HttpRequest& request) {
+         return DrawGrasp(service, *slots, request);
+       }});
 }
 
 }  // namespace graspdb

@@ -112,7 +112,8 @@ Result<HttpResponse> PostHand(Service& service, WorkSlots& slots,
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     const auto slot = slots.Take(request.stop);
     if (!slot) return slot.error();
-    GRASPDB_TRY(added, service.AddHand(files));
+    RequestContext context(request);
+    GRASPDB_TRY(added, service.AddHand(files, context.context()));
     GRASPDB_TRY(json, DescribeHand(service, added.hand));
     HttpResponse response = MakeJsonResponse(added.created ? 201 : 200, json);
     response.headers.emplace_back("Location", "/v1/hands/" + added.hand.name);

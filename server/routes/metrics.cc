@@ -86,7 +86,18 @@ Result<std::string> WriteStore(const Store& store) {
   text += WriteMetricHead("graspdb_database_bytes", "gauge",
                           "Size of the database file without its log.");
   text += fmt::format("graspdb_database_bytes {}\n", bytes);
+  std::error_code none;
+  const auto log = std::filesystem::file_size(store.path() + "-wal", none);
+  text += WriteMetricHead("graspdb_database_log_bytes", "gauge",
+                          "Size of the database's write-ahead log.");
+  text += fmt::format("graspdb_database_log_bytes {}\n", none ? 0 : log);
   return text;
+}
+
+std::string WriteHeld(const WorkSlots& threads) {
+  return WriteMetricHead("graspdb_http_held_threads", "gauge",
+                         "Event streams and requests that wait for jobs.") +
+         fmt::format("graspdb_http_held_threads {}\n", threads.taken());
 }
 
 std::string WriteCache(const CacheCounts& counts) {
@@ -115,7 +126,9 @@ Result<HttpResponse> GetMetrics(const Service& service,
   response.body =
       WriteMetricHead("graspdb_build_info", "gauge", "What runs here.") +
       fmt::format("graspdb_build_info{{version=\"{}\"}} 1\n", EngineVersion()) +
-      (options.metrics ? options.metrics->Write() : "") + store +
+      (options.metrics ? options.metrics->Write() : "") +
+      WriteHeld(*options.held_threads) +
+      (options.jobs ? options.jobs->Write() : "") + store +
       WriteDecoder(service.CountDecoded()) +
       WriteCache(options.grasp_texts->counts()) + WriteProcess();
   return response;

@@ -7,6 +7,7 @@
 #include "server/http/router.h"
 #include "server/jobs/service.h"
 #include "server/routes/grasp_texts.h"
+#include "server/routes/job_metrics.h"
 #include "server/routes/work_slots.h"
 
 /** @file
@@ -24,7 +25,11 @@ struct RouteOptions {
   std::shared_ptr<WorkSlots> held_threads{std::make_shared<WorkSlots>(32, 0)};
   /** What GET /metrics tells of requests; may be null. */
   std::shared_ptr<RequestMetrics> metrics;
+  /** … and of jobs; may be null. */
+  std::shared_ptr<JobMetrics> jobs;
   std::shared_ptr<GraspTexts> grasp_texts{std::make_shared<GraspTexts>()};
+  /** Drawing takes all cores: one picture after the other. */
+  std::shared_ptr<WorkSlots> picture_slots{std::make_shared<WorkSlots>(1, 16)};
   /** For meshes that are decoded and segmented while someone waits. */
   std::shared_ptr<WorkSlots> work_slots{std::make_shared<WorkSlots>(2, 32)};
 };

@@ -1,8 +1,11 @@
+#include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <mutex>
@@ -12,26 +15,35 @@
 
 #include "server/config.h"
 #include "server/http/http_server.h"
+#include "server/http/log_line.h"
 #include "server/routes/routes.h"
 
 namespace graspdb {
 namespace {
+
+void LogLine(const std::string& line) {
+  const std::string whole = line + "\n";
+  std::fwrite(whole.data(), 1, whole.size(), stderr);
+}
 
 /** Written to by the signal handler, which may do little else. */
 int stop_event = -1;
 
 extern "C" void HandleStopSignal(int) { eventfd_write(stop_event, 1); }
 
-/** Stops the server at the first SIGTERM or SIGINT; a second one kills. */
+/** Stops the server at the first SIGTERM or SIGINT. What has not ended in time
+ is cut off, at once when the other one comes, too; the same one again kills. */
 class StopOnSignal {
  public:
-  explicit StopOnSignal(HttpServer& server) {
+  StopOnSignal(HttpServer& server, std::chrono::milliseconds drain_timeout) {
     stop_event = eventfd(0, EFD_CLOEXEC);
-    waiter_ = std::thread([&server] {
-      eventfd_t count = 0;
-      while (eventfd_read(stop_event, &count) != 0) {
-      }
+    waiter_ = std::thread([this, &server, drain_timeout] {
+      WaitForStop(-1);
       server.Stop();
+      if (!ended_) WaitForStop(static_cast<int>(drain_timeout.count()));
+      if (ended_) return;
+      LogLine(MakeLogLine("info", "drain_timeout"));
+      server.CutConnections();
     });
     struct sigaction action {};
     action.sa_handler = HandleStopSignal;
@@ -42,6 +54,7 @@ class StopOnSignal {
   ~StopOnSignal() {
     signal(SIGTERM, SIG_DFL);
     signal(SIGINT, SIG_DFL);
+    ended_ = true;
     eventfd_write(stop_event, 1);
     waiter_.join();
     close(stop_event);
@@ -49,13 +62,20 @@ class StopOnSignal {
   StopOnSignal(const StopOnSignal&) = delete;
 
  private:
+  // For a signal, or the end of serving; -1: for ever.
+  static void WaitForStop(int milliseconds) {
+    pollfd file{stop_event, POLLIN, 0};
+    while (true) {
+      const int ready = poll(&file, 1, milliseconds);
+      if (ready == 0) return;
+      eventfd_t count = 0;
+      if (ready > 0 && eventfd_read(stop_event, &count) == 0) return;
+    }
+  }
+
+  std::atomic<bool> ended_{false};
   std::thread waiter_;
 };
-
-void LogLine(const std::string& line) {
-  const std::string whole = line + "\n";
-  std::fwrite(whole.data(), 1, whole.size(), stderr);
-}
 
 /** Written under another name first: a reader sees the whole number. */
 bool WritePortFile(const std::string& path, int port) {
@@ -64,6 +84,27 @@ bool WritePortFile(const std::string& path, int port) {
   file << port << "\n";
   file.close();
   return file.good() && std::rename(fresh.c_str(), path.c_str()) == 0;
+}
+
+JobObserver ObserveJobs(const std::shared_ptr<JobMetrics>& metrics) {
+  JobObserver observer;
+  observer.on_end = [metrics](const StoredJob& job, double seconds) {
+    metrics->Add(job.kind, job.state, seconds);
+    std::vector<std::pair<std::string_view, std::string>> fields{
+        {"job", job.id},
+        {"kind", ToString(job.kind)},
+        {"state", ToString(job.state)},
+        {"ms", fmt::format("{:.0f}", 1e3 * seconds)}};
+    if (job.error) {
+      fields.emplace_back("code", ToString(job.error->code));
+      fields.emplace_back("cause", job.error->message);
+    }
+    LogLine(MakeLogLine("info", "job", fields));
+  };
+  observer.on_failure = [](const std::string& job, const std::string& what) {
+    LogLine(MakeLogLine("error", "job", {{"job", job}, {"cause", what}}));
+  };
+  return observer;
 }
 
 int Fail(const Error& error) {
@@ -84,10 +125,12 @@ int RunServer(Service& service, const ServerConfig& config) {
   HttpServerOptions options;
   options.limits.max_upload_bytes = config.max_upload_bytes;
   options.threads = config.http_threads;
+  const auto drain_timeout = options.limits.drain_timeout;
   options.log = LogLine;
   options.metrics = std::make_shared<RequestMetrics>();
   RouteOptions routes;
   routes.metrics = options.metrics;
+  routes.jobs = std::make_shared<JobMetrics>();
   routes.default_wait = config.default_wait;
   const auto threads = static_cast<int>(config.http_threads);
   routes.held_threads =
@@ -95,6 +138,8 @@ int RunServer(Service& service, const ServerConfig& config) {
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   routes.work_slots =
       std::make_shared<WorkSlots>(std::max(1, cores), threads / 4);
+  routes.picture_slots =
+      std::make_shared<WorkSlots>(1, std::max(1, threads / 4));
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());
@@ -103,12 +148,13 @@ int RunServer(Service& service, const ServerConfig& config) {
                  fmt::format("Cannot write {}.", config.port_file),
                  "Choose another --port-file."});
   }
-  if (const auto started = service.StartWorkers(); !started) {
+  if (const auto started = service.StartWorkers(ObserveJobs(routes.jobs));
+      !started) {
     return Fail(started.error());
   }
   Result<void> served;
   {
-    const StopOnSignal stop(server);
+    const StopOnSignal stop(server, drain_timeout);
     const bool bare_ipv6 = config.host.find(':') != std::string::npos;
     fmt::print("graspdb listening on http://{}:{}\n",
                bare_ipv6 ? "[" + config.host + "]" : config.host, *port);

@@ -24,6 +24,11 @@ Result<std::shared_ptr<void>> WorkSlots::Take(const std::stop_token& stop) {
   return std::shared_ptr<void>(nullptr, [this](void*) { GiveBack(); });
 }
 
+int WorkSlots::taken() const {
+  const std::lock_guard lock(mutex_);
+  return most_ - free_;
+}
+
 void WorkSlots::GiveBack() {
   const std::lock_guard lock(mutex_);
   ++free_;

@@ -28,7 +28,8 @@ Error MakeWriteError(const std::string& path) {
 
 }  // namespace
 
-Result<void> Store::WriteBackup(const std::string& path) const {
+Result<void> Store::WriteBackup(const std::string& path,
+                                const ExecutionContext& context) const {
   std::error_code error;
   if (std::filesystem::exists(path, error)) {
     return Error{ErrorCode::kConflict, path + " exists already.",
@@ -40,11 +41,16 @@ Result<void> Store::WriteBackup(const std::string& path) const {
   const auto written = RunStorage([&] {
     // A connection of its own: readers and the writer go on.
     Database database(impl_->path, Database::Mode::kReadWrite);
+    database.Heed(context);
     database.Prepare("VACUUM INTO ?").Bind(partial).Run();
   });
   if (!written) {
     std::filesystem::remove(partial, error);
     return written.error();
+  }
+  if (context.Cancelled()) {
+    std::filesystem::remove(partial, error);
+    return Error{ErrorCode::kCancelled, "The backup was cancelled."};
   }
   if (!Sync(partial) || std::rename(partial.c_str(), path.c_str()) != 0 ||
       !Sync(folder.empty() ? "." : folder)) {

@@ -249,7 +249,24 @@ bool Database::InTransaction() const {
   return sqlite3_get_autocommit(handle_) == 0;
 }
 
+void Database::Heed(const ExecutionContext& context) {
+  constexpr int kInstructions = 20;  // A few rows, which may be large.
+  // SQLite's own type has no const.
+  void* const argument = const_cast<ExecutionContext*>(&context);
+  sqlite3_progress_handler(
+      handle_, kInstructions,
+      [](void* heeded) {
+        const auto* const seen = static_cast<const ExecutionContext*>(heeded);
+        return seen->Cancelled() ? 1 : 0;
+      },
+      argument);
+}
+
 void Database::Fail(int code) const {
+  if ((code & 0xff) == SQLITE_INTERRUPT) {
+    throw StorageFailure(Error{ErrorCode::kCancelled,
+                               "The work on the database was cancelled."});
+  }
   // What is checked before a write may be gone when it comes.
   if (code == SQLITE_CONSTRAINT_FOREIGNKEY) {
     throw StorageFailure(

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 
 struct sqlite3;
@@ -129,6 +130,9 @@ class Database {
   /** How many rows the last statement changed. */
   int64_t Changes() const;
   bool InTransaction() const;
+  /** Statements end with kCancelled soon after the context is cancelled, which
+   must outlive them. */
+  void Heed(const ExecutionContext& context);
 
  private:
   friend class Statement;

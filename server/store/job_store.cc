@@ -90,6 +90,18 @@ void FailOverdueJobs(Database& database) {
       .Run();
 }
 
+// Rows of jobs are no archive: what they made is stored elsewhere.
+void ForgetOldJobs(Database& database) {
+  constexpr int64_t kWeek = int64_t{7} * 24 * 3600 * 1000;
+  const int64_t week_ago = CalcUnixMilliseconds() - kWeek;
+  database
+      .Prepare(
+          "DELETE FROM jobs WHERE id < ? AND finished_at < ?"
+          " AND state IN ('succeeded', 'failed', 'cancelled')")
+      .Bind(MakeUuidBound(week_ago), FormatTime(week_ago))
+      .Run();
+}
+
 int64_t CountQueued(Database& database, bool slow) {
   Statement row = database.Prepare(
       "SELECT count(*) FROM jobs WHERE state = 'queued' AND slow = ?");
@@ -106,6 +118,7 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
   const std::string payload_sha256 = CalcSha256(payload);
   return impl_->Write([&](Database& database) {
     FailOverdueJobs(database);
+    ForgetOldJobs(database);
     if (auto known = FindJobByKey(database, terms.idempotency_key)) {
       if (known->kind != kind || known->request != request ||
           !CarriesPayload(database, known->id, payload_sha256)) {

@@ -120,6 +120,8 @@ Result<std::unique_ptr<Store>> Store::Open(const std::string& path,
     impl->writer = std::make_unique<Database>(path, Database::Mode::kReadWrite);
     impl->writer->Execute(
         "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+        // What one large write has made of the log is given back.
+        "PRAGMA journal_size_limit = 67108864;"
         // Indices are written all over: 32 MiB of their pages at hand.
         "PRAGMA cache_size = -32768;");
     ApplyMigrations(*impl->writer, Migrations());
@@ -154,6 +156,8 @@ Result<std::optional<StoredReply>> Store::FindReply(
   });
 }
 
+constexpr int64_t kReplyMilliseconds = 24 * 3600 * 1000;
+
 Result<void> Store::InsertReply(const StoredReply& reply) {
   std::string headers;
   for (const auto& [name, value] : reply.headers) {
@@ -162,9 +166,9 @@ Result<void> Store::InsertReply(const StoredReply& reply) {
     headers += name + ": " + value + "\n";
   }
   return impl_->Write([&](Database& database) {
-    database.Execute(
-        "DELETE FROM replies WHERE julianday(created_at) <"
-        " julianday('now') - 1");
+    database.Prepare("DELETE FROM replies WHERE created_at < ?")
+        .Bind(FormatTime(CalcUnixMilliseconds() - kReplyMilliseconds))
+        .Run();
     database
         .Prepare(
             "INSERT OR IGNORE INTO replies (key, request_sha256, status,"

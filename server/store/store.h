@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "server/orders.h"
 #include "server/records.h"
@@ -167,7 +168,8 @@ class Store {
   /** @param slow  It takes minutes: kept apart from what someone waits for.
    @param payload  The bytes of a mesh, say; kept until the job ends.
    @param max_queued  Of the slow ones, or of the others.
-   A job that missed its deadline gives its key back.
+   A job that missed its deadline gives its key back; one that ended is
+   forgotten after a week.
    @retval kKeyReused if the key's job asked for something else or carries
      another payload.
    @retval kOverloaded when as many are queued. */
@@ -205,8 +207,10 @@ class Store {
   Result<StoreCounts> Count() const;
   /** Writes a consistent copy of the whole database as it is now; readers and
    writers go on meanwhile. It is whole and on the disk, or not there.
-   @retval kConflict when there is such a file. */
-  Result<void> WriteBackup(const std::string& path) const;
+   @retval kConflict when there is such a file.
+   @retval kCancelled soon after the context is. */
+  Result<void> WriteBackup(const std::string& path,
+                           const ExecutionContext& context = {}) const;
   /** The size of the database without its log, bytes. */
   Result<int64_t> CalcSize() const;
   /** Reads every page, key and blob. */

@@ -9,16 +9,16 @@ import time
 class LiveServer:
     """Runs `graspdb serve` and ends it as an operator would."""
 
-    def __init__(self, binary, database, folder, *flags):
+    def __init__(self, binary, database, folder, *flags, prefix=(), preexec_fn=None):
         self.database = database
         self.log_path = folder / "server.log"
         self.port_file = folder / "port"
         self.port_file.unlink(missing_ok=True)
         with open(self.log_path, "ab") as log:
             self.process = subprocess.Popen(
-                [binary, "serve", "--db", str(database), "--port", "0",
+                [*prefix, binary, "serve", "--db", str(database), "--port", "0",
                  "--port-file", str(self.port_file), *flags],
-                stdout=subprocess.DEVNULL, stderr=log,
+                stdout=subprocess.DEVNULL, stderr=log, preexec_fn=preexec_fn,
                 env={**os.environ, "LC_ALL": "C"})
         self.port = self._wait_for_port()
         self.url = f"http://127.0.0.1:{self.port}"

@@ -7,6 +7,7 @@ import os
 import pathlib
 import random
 import signal
+import socket
 import subprocess
 import threading
 import time
@@ -208,3 +209,90 @@ def test_a_server_that_is_asked_to_end_answers_first(phoenix):
     assert answered > 0
     print(f"\n{rounds} ends, {answered} answers, slowest end {slowest:.2f} s")
     assert slowest < 10.0
+
+
+def test_a_server_ends_soon_whatever_is_in_flight(phoenix):
+    """A body that drips, an event stream, a request that waits, a job at work."""
+    url = phoenix.url
+    port = phoenix.live.port
+    contract = Contract(url)
+    example = contract.call("listObjects", 200, query={"role": "example"})["items"][0]["id"]
+    job = contract.call("postGraspSpaces", 202, path={"id": example},
+                        headers={"Prefer": "respond-async"}, body={"parts": ["handle"]})
+    while contract.call("getJob", 200, path={"id": job["id"]})["state"] != "running":
+        time.sleep(0.02)
+    drips = socket.create_connection(("127.0.0.1", port))
+    drips.sendall(b"POST /v1/objects?format=obj HTTP/1.1\r\nHost: h\r\n"
+                  b"Content-Length: 1000000\r\n\r\nv 0 0")
+    stream = requests.get(f"{url}/v1/jobs/{job['id']}/events", stream=True, timeout=60)
+    waits = {}
+
+    def wait():
+        waits["answer"] = requests.post(
+            f"{url}/v1/objects/{example}/grasp-spaces", json={"parts": ["handle"], "seed": 2},
+            headers={"Prefer": "wait=300"}, timeout=60)
+
+    waiter = threading.Thread(target=wait)
+    waiter.start()
+    while contract.call("listJobs", 200, query={"state": "queued"})["items"] == []:
+        time.sleep(0.02)
+    begin = time.monotonic()
+    assert phoenix.live.stop() == 0, phoenix.live.log()
+    took = time.monotonic() - begin
+    waiter.join()
+    assert waits["answer"].status_code == 202, waits["answer"].text
+    assert b"event: job" in b"".join(stream.iter_content(None))
+    drips.close()
+    print(f"\nended within {took:.2f} s")
+    assert took < 10.0
+    # Neither job is lost, nor does the interruption count as a failure.
+    phoenix.start()
+    contract = Contract(phoenix.url)
+    for id in (job["id"], waits["answer"].json()["id"]):
+        assert contract.call("getJob", 200, path={"id": id})["state"] in ("queued", "running")
+        contract.call("cancelJob", 200, path={"id": id})
+
+
+def small_disk(folder):
+    """The command that runs another with 4 MB of disk in the folder: a database, the
+    first argument, and what someone else has left there."""
+    script = ('mount -t tmpfs -o size=4m tmpfs "$0" && cp "$1" "$0/a.db" && shift &&'
+              ' head -c 1000000 /dev/zero >"$0/other" && exec "$@"')
+    return ["unshare", "--mount", "sh", "-c", script, str(folder)]
+
+
+def test_a_full_disk_is_a_507_until_there_is_room(binary, tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    probe = subprocess.run(["unshare", "--mount", "mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs",
+                            str(disk)], capture_output=True, text=True)
+    if probe.returncode:
+        pytest.skip("no file system can be mounted here; storage_test fills disks in a VFS: "
+                    + probe.stderr.strip())
+    empty = tmp_path / "empty.db"
+    (tmp_path / "data").mkdir()
+    subprocess.run([binary, "populate", str(tmp_path / "data"), "--db", str(empty)], check=True)
+    live = LiveServer(binary, disk / "a.db", tmp_path,
+                      prefix=small_disk(disk) + [str(empty)])
+    contract = Contract(live.url)
+    stored = []
+    for i in range(200):
+        answer = requests.post(live.url + "/v1/objects?format=obj",
+                               data=meshes.box_obj(0.05 + 1e-4 * i, 0.06, 0.07)
+                               + b"#" * 100_000, timeout=60)
+        if answer.status_code != 201:
+            break
+        stored.append(answer.json()["id"])
+    assert answer.status_code == 507, answer.text
+    assert answer.headers["Retry-After"] and "disk is full" in answer.json()["hint"]
+    assert str(disk) not in answer.text
+    assert len(stored) > 3
+    # Reading goes on, nothing of the object is there …
+    assert requests.get(live.url + "/healthz", timeout=10).status_code == 200
+    listed = contract.call("listObjects", 200, query={"limit": 1000})["items"]
+    assert sorted(item["id"] for item in listed) == sorted(stored)
+    # … and it heals as soon as there is room.
+    pathlib.Path(f"/proc/{live.process.pid}/root{disk}/other").unlink()
+    contract.call("postObject", 201, query={"format": "obj"}, body=meshes.box_obj(0.2, 0.1, 0.1))
+    assert "event=storage" in live.log() and "event=internal" not in live.log()
+    assert live.stop() == 0, live.log()

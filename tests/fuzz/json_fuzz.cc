@@ -27,6 +27,9 @@ std::vector<std::string> MakeSeeds() {
       R"({"settings":{"samples":200,"unary_sigma":0.2},"seed":1})",
       R"({"preset":"paper","contact":{"friction":0.4},"replan":{"iterations":10}})",
       R"({"name":"mug","title":"Mugs","parts":[{"label":"body"}],"topology":[],"examples":[{"mesh":"a.obj","labels":"a.json"}],"novel":[{"name":"b","mesh":"b.obj"}]})",
+      R"({"category":"mug","parts":["body"],"stage":"assembly","limit":10,"again":true})",
+      R"({"labels_bytes":13,"role":"example","category":"mug","learn":false})",
+      R"({"mesh":{"units":"mm"},"category":"auto","count":5,"stage":"transfer"})",
       "[[[[[[1e3,-0.5,\"\\u00e4\",null,true]]]]]]"};
 }
 
@@ -50,7 +53,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Expect(PartLabelFromJson(text));
   Expect(SegmentOrderFromJson(text));
   Expect(LearnOrderFromJson(text));
-  Expect(StoredTransferOrderFromJson(text));
+  Expect(VerifyOrderFromJson(text));
+  Expect(StoredImportOrderFromJson(text, text));
+  Expect(StoredSegmentOrderFromJson(text));
+  Expect(StoredLearnOrderFromJson(text));
+  Expect(StoredTransferOrderFromJson(text, text));
   Expect(SegmentationFromJson(text, {}));
   if (const auto parameters = ParametersFromJson(text, {})) {
     const std::string canonical = ParametersToJson(*parameters);

@@ -8,6 +8,7 @@
 
 #include "server/store/database.h"
 #include "server/store/store.h"
+#include "tests/support/rounds.h"
 #include "tests/support/stored_records.h"
 #include "tests/support/temp_folder.h"
 
@@ -78,7 +79,7 @@ TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
       ++acknowledged;
     }
   });
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < CountRounds(10); ++i) {
     const int before = acknowledged;
     const std::string copy = folder_.File("copy" + std::to_string(i) + ".db");
     ASSERT_TRUE(store_->WriteBackup(copy));
@@ -93,6 +94,17 @@ TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
   stop = true;
   writer.join();
   EXPECT_GT(acknowledged, 0);
+}
+
+TEST_F(BackupTest, ThatIsCancelledLeavesNothing) {
+  const std::string copy = folder_.File("copy.db");
+  ExecutionContext context;
+  context.Cancel();
+  EXPECT_EQ(store_->WriteBackup(copy, context).error().code,
+            ErrorCode::kCancelled);
+  EXPECT_FALSE(fs::exists(copy));
+  EXPECT_FALSE(fs::exists(copy + ".partial"));
+  EXPECT_TRUE(store_->WriteBackup(copy));
 }
 
 TEST_F(BackupTest, OverwritesNothing) {

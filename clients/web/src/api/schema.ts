@@ -576,7 +576,10 @@ export interface paths {
             readonly path?: never;
             readonly cookie?: never;
         };
-        /** The jobs, newest first. */
+        /**
+         * The jobs, newest first.
+         * @description A job that ended a week ago is forgotten, and its Idempotency-Key with it.
+         */
         readonly get: operations["listJobs"];
         readonly put?: never;
         readonly post?: never;
@@ -1835,6 +1838,7 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly listTransfers: {

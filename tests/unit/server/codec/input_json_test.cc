@@ -132,7 +132,7 @@ TEST(HandFile, NamesTheFieldAtFault) {
   EXPECT_EQ(field_of(R"(,"ignored_collisions":[["a"]])"), "ignored_collisions");
 }
 
-TEST(Orders, ComeBackFromTheJobsTableWithoutTheirBytes) {
+TEST(Orders, ComeBackFromTheJobsTableWithTheirPayload) {
   TransferOrder order;
   order.mesh.bytes = "mesh";
   order.mesh.file_name = "mug.stl";
@@ -145,8 +145,10 @@ TEST(Orders, ComeBackFromTheJobsTableWithoutTheirBytes) {
   order.stage = GraspStage::kTransfer;
   order.parameters.contact.friction = 0.25;
   order.seed = 18446744073709551615u;
-  const TransferOrder read = StoredTransferOrderFromJson(ToJson(order)).value();
-  EXPECT_EQ(read.mesh.bytes, "");
+  const TransferOrder read =
+      StoredTransferOrderFromJson(ToJson(order), MakePayload(order.mesh))
+          .value();
+  EXPECT_EQ(read.mesh.bytes, "mesh");
   EXPECT_EQ(read.mesh.file_name, "mug.stl");
   EXPECT_EQ(read.category, "auto");
   EXPECT_EQ(read.count, 7);
@@ -165,8 +167,36 @@ TEST(Orders, ComeBackFromTheJobsTableWithoutTheirBytes) {
   import.role = ObjectRole::kExample;
   import.face_labels = {"a", "b"};
   import.learn = false;
-  EXPECT_EQ(ToJson(StoredImportOrderFromJson(ToJson(import)).value()),
-            ToJson(import));
+  import.bytes = "mesh";
+  const ImportOrder imported =
+      StoredImportOrderFromJson(ToJson(import), MakePayload(import)).value();
+  EXPECT_EQ(ToJson(imported), ToJson(import));
+  EXPECT_EQ(imported.face_labels, import.face_labels);
+  EXPECT_EQ(imported.bytes, "mesh");
+}
+
+TEST(Orders, OfAnImportSaysLittleHoweverManyLabelsThereAre) {
+  ImportOrder order;
+  order.face_labels.assign(100'000, "body");
+  EXPECT_LT(ToJson(order).size(), 300u);
+  const auto read =
+      StoredImportOrderFromJson(ToJson(order), MakePayload(order));
+  EXPECT_EQ(read.value().face_labels, order.face_labels);
+}
+
+TEST(Orders, OfAnImportThatWasStoredWithItsLabelsAreRead) {
+  const auto read = StoredImportOrderFromJson(
+      R"({"file_name":"","face_labels":["a","b"],"learn":true})", "mesh");
+  EXPECT_THAT(read.value().face_labels, ElementsAre("a", "b"));
+  EXPECT_EQ(read->bytes, "mesh");
+}
+
+TEST(Orders, WithFewerBytesOfLabelsThanTheySayAreRefused) {
+  ImportOrder order;
+  order.face_labels = {"a", "b"};
+  EXPECT_EQ(StoredImportOrderFromJson(ToJson(order), "[\"a\"").error().field,
+            "labels_bytes");
+  EXPECT_FALSE(StoredImportOrderFromJson(ToJson(order), "[\"a\",\"b\"}"));
 }
 
 TEST(Orders, OfSegmentingAndVerifyingAreStoredWhole) {

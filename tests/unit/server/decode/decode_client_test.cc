@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -212,6 +213,22 @@ TEST(Decoder, GivesUpAtTheDeadline) {
     EXPECT_EQ(decoded.error().code, ErrorCode::kUnusableInput);
     EXPECT_THAT(decoded.error().message, HasSubstr("gave up after 0.3 s"));
   }
+}
+
+TEST(Decoder, EndsWithTheContextOfWhoAsks) {
+  ScratchFolder folder;
+  const Decoder decoder(MakeImpostor(folder, "exec sleep 1000"));
+  ExecutionContext context;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    context.Cancel();
+  });
+  const FileBytes bytes(100, 'v');
+  const auto decoded = decoder.Decode(bytes, DecodeRequest{}, context);
+  EXPECT_EQ(decoded.error().code, ErrorCode::kCancelled);
+  later.join();
+  EXPECT_EQ(decoder.DecodeUrdf("<robot/>", context).error().code,
+            ErrorCode::kCancelled);
 }
 
 TEST(Decoder, OutlivesAHelperThatMisbehaves) {

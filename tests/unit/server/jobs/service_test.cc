@@ -173,7 +173,7 @@ TEST_F(ServiceTest, AHandIsAddedOnceAndOnlyIfItCanBeRead) {
   HandFiles files;
   files.annotations = R"({"name":"claw","urdf":"claw.urdf"})";
   files.urdf = "<robot name=\"claw\"><link name=\"a\"";
-  EXPECT_FALSE(service->AddHand(files));
+  EXPECT_FALSE(service->AddHand(files, ExecutionContext()));
   EXPECT_FALSE(service->store().FindHand("claw"));
 }
 
@@ -583,7 +583,10 @@ TEST_F(ServiceTest, ATransferJobEndsWithItsTransfer) {
 
 TEST_F(ServiceTest, AJobOnABadMeshFailsAndStoresNothing) {
   const auto service = MakeService(Copy("learned"));
-  ASSERT_TRUE(service->StartWorkers());
+  std::vector<StoredJob> ended;
+  JobObserver observer;
+  observer.on_end = [&](const StoredJob& job, double) { ended.push_back(job); };
+  ASSERT_TRUE(service->StartWorkers(observer));
   TransferOrder order = MakeOrder();
   order.mesh.bytes = "v nothing";
   const auto before = service->store().Count().value();
@@ -592,6 +595,10 @@ TEST_F(ServiceTest, AJobOnABadMeshFailsAndStoresNothing) {
   EXPECT_EQ(done.state, JobState::kFailed);
   EXPECT_EQ(done.error.value().code, ErrorCode::kUnusableInput);
   EXPECT_EQ(service->store().Count().value(), before);
+  service->StopWorkers();
+  ASSERT_THAT(ended, SizeIs(1));  // Whoever runs the server is told.
+  EXPECT_EQ(ended[0].id, queued.id);
+  EXPECT_EQ(ended[0].error, done.error);
 }
 
 TEST_F(ServiceTest, WhatCanBeCheckedAtOnceIsRefusedBeforeAJobIsMade) {

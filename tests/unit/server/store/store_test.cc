@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 
+#include "server/ids.h"
+#include "server/store/database.h"
 #include "tests/support/stored_records.h"
 #include "tests/support/temp_folder.h"
 
@@ -583,6 +585,42 @@ TEST_F(StoreTest, AJobThatIsOverdueFailsAndGivesPlaceAndKeyBack) {
   EXPECT_EQ(missed.error.value().code, ErrorCode::kDeadlineExceeded);
   EXPECT_EQ(store_->ReadJobPayload(first).value(), "");
   EXPECT_EQ(store_->ClaimJob(true).value()->id, second);
+}
+
+TEST_F(StoreTest, AJobThatEndedIsForgottenAfterAWeek) {
+  const auto insert = [&] {
+    return store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value();
+  };
+  StoredJob ended = insert();
+  StoredJob late = insert();
+  const StoredJob queued = insert();
+  ended.state = late.state = JobState::kSucceeded;
+  ASSERT_TRUE(store_->FinishJob(ended));
+  ASSERT_TRUE(store_->FinishJob(late));
+  insert();
+  EXPECT_TRUE(store_->FindJob(ended.id));
+  // As if all had been submitted ten days ago, and the first one ended then.
+  constexpr int64_t kTenDays = int64_t{10} * 24 * 3600 * 1000;
+  const int64_t then = CalcUnixMilliseconds() - kTenDays;
+  const std::string before = MakeUuidBound(then);
+  const auto age = [&](const std::string& id) {
+    return before + id.substr(13);
+  };
+  {
+    Database database(store_->path(), Database::Mode::kReadWrite);
+    database.Prepare("UPDATE jobs SET finished_at = ? WHERE id = ?")
+        .Bind(FormatTime(then), ended.id)
+        .Run();
+    for (const std::string& id : {ended.id, late.id, queued.id}) {
+      database.Prepare("UPDATE jobs SET id = ? WHERE id = ?")
+          .Bind(age(id), id)
+          .Run();
+    }
+  }
+  insert();
+  EXPECT_EQ(store_->FindJob(age(ended.id)).error().code, ErrorCode::kNotFound);
+  EXPECT_TRUE(store_->FindJob(age(late.id)));
+  EXPECT_TRUE(store_->FindJob(age(queued.id)));
 }
 
 TEST_F(StoreTest, JobsAreListedNewestFirst) {
