@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFewMutants = 20'000;
+constexpr int kFewMutants = 100'000;
 constexpr size_t kMostBytes = 1 << 16;
 
 void Run(const std::string& input) {

@@ -50,17 +50,38 @@ void Acknowledge(int pipe, char kind, const std::string& id) {
   }
 }
 
-TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
-  const TempFolder folder;
-  const std::string path = folder.File("a.db");
-  {
-    auto store = Store::Open(path);
-    ASSERT_TRUE((*store)->InsertCategory(MakeMugCategory()));
-    ASSERT_TRUE((*store)->InsertHand(MakeClaw()));
+// What the store is asked after each kill.
+void CheckAcknowledged(const std::string& path, int pipe, int* acknowledged) {
+  auto store = Store::Open(path);
+  ASSERT_TRUE(store) << store.error().message;
+  Acknowledgement message{};
+  while (read(pipe, &message, sizeof(message)) == sizeof(message)) {
+    ++*acknowledged;
+    const std::string id(message.id, strnlen(message.id, 36));
+    if (message.kind == 'o') {
+      EXPECT_TRUE((*store)->ReadObjectMeshes(id));
+      EXPECT_EQ((*store)->ListParts(id).value().size(), 2u);
+    } else {
+      EXPECT_EQ((*store)->ReadGraspSpace(id).value().grasps.size(), 5u);
+    }
   }
+  EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
+}
+
+TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
+  // Each database lives through so many kills.
+  constexpr int kKills = 25;
+  const TempFolder folder;
   Random random(1);
   int acknowledged = 0;
-  for (int round = 0; round < CountRounds(25); ++round) {
+  std::string path;
+  for (int round = 0; round < CountRounds(kKills); ++round) {
+    if (round % kKills == 0) {
+      path = folder.File(std::to_string(round) + ".db");
+      auto store = Store::Open(path);
+      ASSERT_TRUE((*store)->InsertCategory(MakeMugCategory()));
+      ASSERT_TRUE((*store)->InsertHand(MakeClaw()));
+    }
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();
@@ -70,27 +91,13 @@ TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
     }
     close(ends[1]);
     std::this_thread::sleep_for(
-        std::chrono::milliseconds(20 + random.NextIndex(120)));
+        std::chrono::milliseconds(20 + random.NextIndex(400)));
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
-
-    auto store = Store::Open(path);
-    ASSERT_TRUE(store) << store.error().message;
-    Acknowledgement message{};
-    while (read(ends[0], &message, sizeof(message)) == sizeof(message)) {
-      ++acknowledged;
-      const std::string id(message.id, strnlen(message.id, 36));
-      if (message.kind == 'o') {
-        EXPECT_TRUE((*store)->ReadObjectMeshes(id));
-        EXPECT_EQ((*store)->ListParts(id).value().size(), 2u);
-      } else {
-        EXPECT_EQ((*store)->ReadGraspSpace(id).value().grasps.size(), 5u);
-      }
-    }
+    CheckAcknowledged(path, ends[0], &acknowledged);
     close(ends[0]);
-    EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
   }
   EXPECT_GT(acknowledged, 25);
   RecordProperty("acknowledged", acknowledged);
