@@ -37,7 +37,10 @@ GraspStage ReadStage(const std::string& text, JsonFields& fields) {
 
 // A label per face is the larger part of some orders.
 std::string EncodeLabels(const ImportOrder& order) {
-  return order.face_labels.empty() ? "" : DumpJson(Json(order.face_labels));
+  if (order.face_labels.empty()) return "";
+  Json json;
+  json["face_labels"] = order.face_labels;
+  return DumpJson(json);
 }
 
 Json Encode(const ImportOrder& order) {
@@ -55,22 +58,6 @@ Json Encode(const ImportOrder& order) {
     json["labels_bytes"] = EncodeLabels(order).size();
   }
   return json;
-}
-
-// Of the payload: what comes before the mesh.
-std::vector<std::string> DecodeLabels(const std::string& text,
-                                      JsonFields& fields) {
-  std::vector<std::string> labels;
-  if (text.empty()) return labels;
-  const auto json = ParseJson(R"({"face_labels":)" + text + "}", kOrderLimits);
-  if (!json) {
-    fields.Fail(json.error());
-    return labels;
-  }
-  JsonFields inner(*json, "");
-  inner.Read("face_labels", labels);
-  if (const auto read = inner.Finish(); !read) fields.Fail(read.error());
-  return labels;
 }
 
 ImportOrder ReadImportOrder(JsonFields& fields, std::string payload) {
@@ -91,7 +78,12 @@ ImportOrder ReadImportOrder(JsonFields& fields, std::string payload) {
   fields.Read("learn", order.learn);
   if (labels_bytes > 0) {
     const auto end = static_cast<size_t>(labels_bytes);
-    order.face_labels = DecodeLabels(payload.substr(0, end), fields);
+    auto labels = FaceLabelsFromJson(payload.substr(0, end));
+    if (labels) {
+      order.face_labels = std::move(*labels);
+    } else {
+      fields.Fail(labels.error());
+    }
     payload.erase(0, end);
   }
   order.bytes = std::move(payload);

@@ -26,8 +26,9 @@ Result<LearnOrder> LearnOrderFromJson(const std::string& text);
  than 1000 grasps unless limit says. */
 Result<VerifyOrder> VerifyOrderFromJson(const std::string& text);
 
-// Orders in the jobs table. What may be large is in the job's payload: the
-// bytes of a mesh, which begin with labels_bytes of face labels.
+// Orders in the jobs table. What may be large is in the job's payload: of a
+// mesh first labels_bytes of face labels, as labels.json, if any, then its
+// file.
 std::string ToJson(const SegmentOrder& order);
 std::string ToJson(const VerifyOrder& order);  ///< As POST /v1/verifications.
 /** Without bytes and face labels, which are in MakePayload(). */

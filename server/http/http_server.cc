@@ -21,8 +21,8 @@
 #include "server/http/body_budget.h"
 #include "server/http/connection.h"
 #include "server/http/log_line.h"
-#include "server/http/multipart.h"
 #include "server/http/problem.h"
+#include "server/http/request_body.h"
 #include "server/http/target.h"
 
 namespace graspdb {
@@ -105,6 +105,19 @@ std::string MakeRequestId() {
   return fmt::format("{:08x}-{:08x}", run, ++count);
 }
 
+/** @param reader  Null when the library takes the request for one without a
+ body. */
+BodyEnd ReadAll(Exchange& exchange, const httplib::ContentReader* reader,
+                const BodyTaker& take) {
+  const auto count = [&](const char* bytes, size_t size) {
+    exchange.bytes_in += size;
+    return take({bytes, size});
+  };
+  if (reader != nullptr && (*reader)(count)) return BodyEnd::kWhole;
+  return exchange.connection->timed_out() ? BodyEnd::kTimedOut
+                                          : BodyEnd::kBroken;
+}
+
 double CalcMilliseconds(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin)
       .count();
@@ -140,10 +153,6 @@ struct HttpServer::Impl : httplib::Server {
   HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
                       HttpRequest& request,
                       const httplib::ContentReader* reader);
-  std::optional<HttpResponse> ReadBody(Exchange& exchange, BodyKind kind,
-                                       HttpRequest& request,
-                                       const httplib::ContentReader* reader);
-  std::optional<HttpResponse> ReadForm(HttpRequest& request) const;
   void Log(const std::string& line) const {
     if (options.log) options.log(line);
   }
@@ -368,9 +377,11 @@ HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
                                       const httplib::ContentReader* reader) {
   Error error{ErrorCode::kInternal, "unknown exception", ""};
   try {
-    if (auto refusal = ReadBody(exchange, route.body, request, reader)) {
-      return std::move(*refusal);
-    }
+    auto refusal = ReadRequestBody(
+        exchange.head, route.body, options.limits, budget,
+        [&](const BodyTaker& take) { return ReadAll(exchange, reader, take); },
+        request);
+    if (refusal) return std::move(*refusal);
     auto response = route.handler(request);
     if (response) return std::move(*response);
     error = response.error();
@@ -388,95 +399,6 @@ HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
                     {{"id", request.id}, {"cause", error.message}}));
   }
   return MakeProblem(error, request.id);
-}
-
-std::optional<HttpResponse> HttpServer::Impl::ReadBody(
-    Exchange& exchange, BodyKind kind, HttpRequest& request,
-    const httplib::ContentReader* reader) {
-  const MessageHead& head = exchange.head;
-  if (!head.HasBody()) return std::nullopt;
-  if (kind == BodyKind::kNone) {
-    return MakeProblem(HttpFault::kMalformedRequest,
-                       "This operation takes no body.", "", request.id);
-  }
-  const std::string_view coding = request.FindHeader("content-encoding");
-  if (!coding.empty() && coding != "identity") {
-    return MakeProblem(HttpFault::kUnsupportedMediaType,
-                       "A body is read without content coding only.",
-                       "Send the bytes uncompressed.", request.id);
-  }
-  const std::string type(request.FindHeader("content-type"));
-  const std::string essence = type.substr(0, type.find_first_of("; \t"));
-  if (kind == BodyKind::kJson && !essence.empty() &&
-      essence != "application/json") {
-    return MakeProblem(HttpFault::kUnsupportedMediaType,
-                       "This operation reads application/json.",
-                       "Send the header Content-Type: application/json.",
-                       request.id);
-  }
-  const size_t limit =
-      kind == BodyKind::kJson
-          ? options.limits.max_json_bytes
-          : static_cast<size_t>(options.limits.max_upload_bytes);
-  bool too_large = head.content_length > limit;
-  bool too_many = false;
-  std::shared_ptr<HeldBody> held;
-  if (kind == BodyKind::kUpload) held = std::make_shared<HeldBody>(budget);
-  request.held = held;
-  const bool complete = !too_large && reader != nullptr &&
-                        (*reader)([&](const char* bytes, size_t size) {
-                          const size_t whole = request.body.size() + size;
-                          too_large = whole > limit;
-                          too_many = held && !held->Grow(whole);
-                          if (too_large || too_many) return false;
-                          request.body.append(bytes, size);
-                          return true;
-                        });
-  exchange.bytes_in = request.body.size();
-  if (too_large) {
-    return MakeProblem({ErrorCode::kTooLarge,
-                        fmt::format("A body has at most {} bytes here.", limit),
-                        "Send a smaller file, or ask the operator to raise "
-                        "the limit."},
-                       request.id);
-  }
-  if (too_many) {
-    return MakeProblem(
-        {ErrorCode::kOverloaded, "Too many large files are being sent at once.",
-         "Send it again in a moment."},
-        request.id);
-  }
-  if (!complete) {
-    return exchange.connection->timed_out()
-               ? MakeProblem(HttpFault::kRequestTimeout,
-                             "The body did not arrive in time.", "", request.id)
-               : MakeProblem(HttpFault::kMalformedRequest,
-                             "The body ended early or its chunks are broken.",
-                             "", request.id);
-  }
-  const bool form = essence == "multipart/form-data";
-  return kind == BodyKind::kUpload && form ? ReadForm(request) : std::nullopt;
-}
-
-std::optional<HttpResponse> HttpServer::Impl::ReadForm(
-    HttpRequest& request) const {
-  auto parts = ParseMultipart(request.body, request.FindHeader("content-type"),
-                              options.limits);
-  if (!parts) return MakeProblem(parts.error(), request.id);
-  request.body.clear();
-  for (FormPart& part : *parts) {
-    if (!part.filename.empty()) {
-      request.files.push_back(std::move(part));
-    } else if (IsUtf8(part.content)) {
-      request.query.emplace_back(std::move(part.name), std::move(part.content));
-    } else {
-      return MakeProblem(
-          {ErrorCode::kInvalidArgument, "A form field is not UTF-8 text.",
-           "Send the mesh as a file: -F mesh=@FILE.", part.name},
-          request.id);
-    }
-  }
-  return std::nullopt;
 }
 
 HttpServer::HttpServer(Router router, HttpServerOptions options)
