@@ -329,6 +329,12 @@ struct StoredJob {
   }
 };
 
+/** What became of jobs that were running when their process ended. */
+struct RequeuedJobs {
+  int num_queued{0};                ///< Begin again.
+  std::vector<StoredJob> given_up;  ///< Failed: they were begun too often.
+};
+
 /** kDeadlineExceeded. */
 Error MakeTimedOut();
 

@@ -41,6 +41,7 @@ Result<void> JobRunner::Start(JobObserver observer) {
   const auto requeued =
       service_.store().RequeueRunningJobs(/* crashed = */ true);
   if (!requeued) return requeued.error();
+  for (const StoredJob& job : requeued->given_up) TellEnd(job, 0.0);
   stopping_ = false;
   for (const bool slow : {false, true}) {
     workers_.emplace_back([this, slow] { Work(slow); });
@@ -88,8 +89,25 @@ void JobRunner::Notify() {
 
 Result<StoredJob> JobRunner::Find(const std::string& id) const {
   GRASPDB_TRY(job, service_.store().FindJob(id));
+  if (job.Overdue(CalcUnixMilliseconds())) {
+    FailOverdue();
+    GRASPDB_TRY(now, service_.store().FindJob(id));
+    if (now.state != JobState::kQueued) return now;
+    // Told all the same when it could not be written.
+    job.state = JobState::kFailed;
+    job.error = MakeTimedOut();
+  }
   AddLiveState(job);
   return job;
+}
+
+void JobRunner::FailOverdue() const {
+  const auto failed = service_.store().FailOverdueJobs();
+  if (!failed) {
+    TellFailure("", failed.error().message);
+    return;
+  }
+  for (const StoredJob& job : *failed) TellEnd(job, 0.0);
 }
 
 void JobRunner::AddLiveState(StoredJob& job) const {
@@ -154,6 +172,7 @@ void JobRunner::Work(bool slow) {
       if (stopping_) return;
       seen = changes_;
     }
+    FailOverdue();
     auto claimed = service_.store().ClaimJob(slow);
     if (claimed && *claimed) {
       Run(**claimed);

@@ -40,7 +40,10 @@ class JobRunner {
   /** There is a new job. */
   void Wake();
 
+  /** One whose deadline passed while it was queued has failed. */
   Result<StoredJob> Find(const std::string& id) const;
+  /** Those whose turn would come too late end, and give place to others. */
+  void FailOverdue() const;
   /** Adds progress, stage and eta to a job that runs here. */
   void AddLiveState(StoredJob& job) const;
   /** What a running transfer has found, in the order of finding, from the

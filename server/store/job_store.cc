@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "server/ids.h"
@@ -75,19 +76,14 @@ bool CarriesPayload(Database& database, const std::string& id,
   return row.Bind(id, payload_sha256).Step();
 }
 
-// Queued jobs whose turn would come too late fail, and give back their keys:
-// who sends the request again means it.
-void FailOverdueJobs(Database& database) {
-  const Error error = MakeTimedOut();
-  database
-      .Prepare(
-          "UPDATE jobs SET state = 'failed', error_code = ?,"
-          " error_message = ?, error_hint = ?, error_field = ?,"
-          " finished_at = ?, idempotency_key = NULL, payload = NULL"
-          " WHERE state = 'queued' AND deadline <= ?")
-      .Bind(ToString(error.code), error.message, error.hint, error.field,
-            FormatNow(), CalcUnixMilliseconds())
-      .Run();
+// Those that a statement has just changed, in the order of their ids.
+std::vector<StoredJob> ReadJobs(Database& database, Statement& changed) {
+  std::vector<std::string> ids;
+  while (changed.Step()) ids.push_back(changed.Text(0));
+  std::sort(ids.begin(), ids.end());
+  std::vector<StoredJob> jobs;
+  for (const std::string& id : ids) jobs.push_back(ReadJob(database, id));
+  return jobs;
 }
 
 // Rows of jobs are no archive: what they made is stored elsewhere.
@@ -117,7 +113,6 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
                                    const JobTerms& terms, int64_t max_queued) {
   const std::string payload_sha256 = CalcSha256(payload);
   return impl_->Write([&](Database& database) {
-    FailOverdueJobs(database);
     ForgetOldJobs(database);
     if (auto known = FindJobByKey(database, terms.idempotency_key)) {
       if (known->kind != kind || known->request != request ||
@@ -153,18 +148,32 @@ Result<StoredJob> Store::InsertJob(JobKind kind, bool slow,
 }
 
 Result<StoredJob> Store::FindJob(const std::string& id) const {
-  auto job =
-      impl_->Read([&](Database& database) { return ReadJob(database, id); });
-  if (!job || !job->Overdue(CalcUnixMilliseconds())) return job;
-  auto failed = impl_->Write([&](Database& database) {
-    FailOverdueJobs(database);
-    return ReadJob(database, id);
+  return impl_->Read([&](Database& database) { return ReadJob(database, id); });
+}
+
+Result<std::vector<StoredJob>> Store::FailOverdueJobs() {
+  const int64_t now = CalcUnixMilliseconds();
+  constexpr const char* kOverdue = " WHERE state = 'queued' AND deadline <= ?";
+  // Most calls find nothing and need no write.
+  const Result<bool> some = impl_->Read([&](Database& database) {
+    Statement row =
+        database.Prepare(std::string("SELECT 1 FROM jobs") + kOverdue);
+    return row.Bind(now).Step();
   });
-  if (failed) return failed;
-  // Told all the same when it cannot be written.
-  job->state = JobState::kFailed;
-  job->error = MakeTimedOut();
-  return job;
+  if (!some) return some.error();
+  if (!*some) return std::vector<StoredJob>();
+  return impl_->Write([&](Database& database) {
+    const Error error = MakeTimedOut();
+    Statement update = database.Prepare(
+        std::string(
+            "UPDATE jobs SET state = 'failed', error_code = ?,"
+            " error_message = ?, error_hint = ?, error_field = ?,"
+            " finished_at = ?, idempotency_key = NULL, payload = NULL") +
+        kOverdue + " RETURNING id");
+    update.Bind(ToString(error.code), error.message, error.hint, error.field,
+                FormatNow(), now);
+    return ReadJobs(database, update);
+  });
 }
 
 Result<Page<StoredJob>> Store::ListJobs(std::optional<JobState> state,
@@ -214,7 +223,6 @@ Result<std::optional<StoredJob>> Store::ClaimJob(bool slow) {
   if (!queued) return queued.error();
   if (queued->empty()) return std::optional<StoredJob>();
   return impl_->Write([&](Database& database) -> std::optional<StoredJob> {
-    FailOverdueJobs(database);
     const std::string id = FindQueued(database, slow);
     if (id.empty()) return std::nullopt;
     database
@@ -251,17 +259,17 @@ Result<StoredJob> Store::FinishJob(const StoredJob& job) {
   });
 }
 
-Result<int> Store::RequeueRunningJobs(bool crashed) {
+Result<RequeuedJobs> Store::RequeueRunningJobs(bool crashed) {
   return impl_->Write([&](Database& database) {
+    RequeuedJobs jobs;
     if (crashed) {
-      database
-          .Prepare(
-              "UPDATE jobs SET state = 'failed', error_code = 'internal',"
-              " error_message = 'The server died three times over it.',"
-              " finished_at = ?, payload = NULL"
-              " WHERE state = 'running' AND attempts >= ?")
-          .Bind(FormatNow(), kMostAttempts)
-          .Run();
+      Statement update = database.Prepare(
+          "UPDATE jobs SET state = 'failed', error_code = 'internal',"
+          " error_message = 'The server died three times over it.',"
+          " finished_at = ?, payload = NULL"
+          " WHERE state = 'running' AND attempts >= ? RETURNING id");
+      update.Bind(FormatNow(), kMostAttempts);
+      jobs.given_up = ReadJobs(database, update);
     }
     database
         .Prepare(
@@ -270,7 +278,8 @@ Result<int> Store::RequeueRunningJobs(bool crashed) {
             " WHERE state = 'running'")
         .Bind(crashed ? 0 : 1)
         .Run();
-    return static_cast<int>(database.Changes());
+    jobs.num_queued = static_cast<int>(database.Changes());
+    return jobs;
   });
 }
 

@@ -168,8 +168,7 @@ class Store {
   /** @param slow  It takes minutes: kept apart from what someone waits for.
    @param payload  The bytes of a mesh, say; kept until the job ends.
    @param max_queued  Of the slow ones, or of the others.
-   A job that missed its deadline gives its key back; one that ended is
-   forgotten after a week.
+   A job that ended is forgotten after a week.
    @retval kKeyReused if the key's job asked for something else or carries
      another payload.
    @retval kOverloaded when as many are queued. */
@@ -177,8 +176,10 @@ class Store {
       JobKind kind, bool slow, const std::string& request,
       const std::string& payload, const JobTerms& terms,
       int64_t max_queued = std::numeric_limits<int64_t>::max());
-  /** One whose deadline passed while it was queued has failed. */
   Result<StoredJob> FindJob(const std::string& id) const;
+  /** Queued jobs whose deadline has passed fail, and give back their keys: who
+   sends the request again means it. @returns them. */
+  Result<std::vector<StoredJob>> FailOverdueJobs();
   /** Newest first. */
   Result<Page<StoredJob>> ListJobs(std::optional<JobState> state,
                                    const PageRequest& page) const;
@@ -194,9 +195,8 @@ class Store {
   /** Puts running jobs back into the queue.
    @param crashed  They were left by a process that died, perhaps of them: one
      that was begun three times fails instead. Else they were interrupted in
-     good order, which does not count.
-   @returns how many are queued again. */
-  Result<int> RequeueRunningJobs(bool crashed);
+     good order, which does not count. */
+  Result<RequeuedJobs> RequeueRunningJobs(bool crashed);
 
   // ---- Idempotency-Key ------------------------------------------------------
   Result<std::optional<StoredReply>> FindReply(const std::string& key) const;

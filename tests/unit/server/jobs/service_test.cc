@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <sstream>
 #include <thread>
 
@@ -30,6 +31,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 // For a job to end, on a busy machine and under a sanitizer, too.
 constexpr std::chrono::seconds kLongEnough{600};
@@ -691,12 +693,44 @@ TEST_F(ServiceTest, AJobThatMissesItsDeadlineFailsAndStoresNothing) {
   ASSERT_EQ(missed.state, JobState::kFailed);
   EXPECT_EQ(missed.error.value().code, ErrorCode::kDeadlineExceeded);
 
-  ASSERT_TRUE(service->StartWorkers());
+  std::mutex mutex;
+  std::vector<std::string> ended;
+  JobObserver observer;
+  observer.on_end = [&](const StoredJob& job, double) {
+    const std::lock_guard lock(mutex);
+    ended.push_back(job.id);
+  };
+  ASSERT_TRUE(service->StartWorkers(observer));
   const auto begun = service->SubmitLearn(lesson, {.deadline = 0.5}).value();
-  const auto done = service->WaitForJob(begun.id, kLongEnough).value();
-  ASSERT_EQ(done.state, JobState::kFailed);
-  EXPECT_EQ(done.error.value().code, ErrorCode::kDeadlineExceeded);
+  const auto behind = service->SubmitLearn(lesson, {.deadline = 0.1}).value();
+  for (const auto& id : {begun.id, behind.id}) {
+    const auto done = service->WaitForJob(id, kLongEnough).value();
+    ASSERT_EQ(done.state, JobState::kFailed);
+    EXPECT_EQ(done.error.value().code, ErrorCode::kDeadlineExceeded);
+  }
+  service->StopWorkers();
+  // Whoever runs the server is told of each, once.
+  EXPECT_THAT(ended, UnorderedElementsAre(begun.id, behind.id));
   EXPECT_EQ(service->store().Count().value().grasp_spaces, 0);
+}
+
+TEST_F(ServiceTest, OfAJobThatKilledThreeServersTheNextOneTells) {
+  const auto service = MakeService(Copy("imported"));
+  LearnOrder lesson;
+  lesson.object_id = FindExample(*service);
+  const auto fatal = service->SubmitLearn(lesson, {}).value();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(service->store().RequeueRunningJobs(true));
+    ASSERT_TRUE(service->store().ClaimJob(true).value());
+  }
+  std::vector<StoredJob> ended;
+  JobObserver observer;
+  observer.on_end = [&](const StoredJob& job, double) { ended.push_back(job); };
+  ASSERT_TRUE(service->StartWorkers(observer));
+  service->StopWorkers();
+  ASSERT_THAT(ended, SizeIs(1));
+  EXPECT_EQ(ended[0].id, fatal.id);
+  EXPECT_EQ(ended[0].error.value().code, ErrorCode::kInternal);
 }
 
 // While there is one no file of this process can be written to.

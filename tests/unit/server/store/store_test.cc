@@ -523,7 +523,7 @@ TEST_F(StoreTest, JobsThatADeadProcessLeftRunningAreQueuedAgain) {
   store_->InsertJob(JobKind::kLearn, true, "{}", "", {}).value();
   store_->ClaimJob(true).value();
   Reopen();
-  EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 1);
+  EXPECT_EQ(store_->RequeueRunningJobs(true).value().num_queued, 1);
   EXPECT_TRUE(store_->ClaimJob(true).value());
 }
 
@@ -533,14 +533,17 @@ TEST_F(StoreTest, AJobThatKilledThreeProcessesFails) {
   const auto claim = [&] { return store_->ClaimJob(true).value().has_value(); };
   for (int i = 0; i < 5; ++i) {  // Interruptions in good order do not count.
     EXPECT_TRUE(claim());
-    EXPECT_EQ(store_->RequeueRunningJobs(false).value(), 1);
+    EXPECT_EQ(store_->RequeueRunningJobs(false).value().num_queued, 1);
   }
   for (int i = 0; i < 2; ++i) {
     EXPECT_TRUE(claim());
-    EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 1);
+    EXPECT_EQ(store_->RequeueRunningJobs(true).value().num_queued, 1);
   }
   EXPECT_TRUE(claim());
-  EXPECT_EQ(store_->RequeueRunningJobs(true).value(), 0);
+  const RequeuedJobs left = store_->RequeueRunningJobs(true).value();
+  EXPECT_EQ(left.num_queued, 0);
+  ASSERT_EQ(left.given_up.size(), 1U);
+  EXPECT_EQ(left.given_up[0].id, job.id);
   EXPECT_EQ(store_->FindJob(job.id).value().state, JobState::kFailed);
 }
 
@@ -578,6 +581,10 @@ TEST_F(StoreTest, AJobThatIsOverdueFailsAndGivesPlaceAndKeyBack) {
   };
   const std::string first = insert(0.001).value().id;
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const auto failed = store_->FailOverdueJobs().value();
+  ASSERT_EQ(failed.size(), 1U);
+  EXPECT_EQ(failed[0].id, first);
+  EXPECT_TRUE(store_->FailOverdueJobs().value().empty());
   const std::string second = insert(1e3).value().id;
   EXPECT_NE(second, first);
   const StoredJob missed = store_->FindJob(first).value();
