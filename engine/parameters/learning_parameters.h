@@ -48,9 +48,8 @@ struct SwarmParameters {
   double uniform_share{0.0};
   bool niches{true};
   bool hold_on_whole{true};
-  double min_robustness{0.5};
   double min_grip{0.75};
-  int robust_copies{8};
+  int grip_copies{8};
   double grip_weight{10.0};
   double near_share{0.5};
   bool shun_failed{true};
@@ -80,13 +79,11 @@ struct SwarmParameters {
     f("hold_on_whole", self.hold_on_whole,
       ParameterInfo{"1", 0, 1,
                     "ours: keep what holds on the whole example, too"});
-    f("min_robustness", self.min_robustness,
-      ParameterInfo{"1", 0, 1,
-                    "ours: share of perturbed copies that must hold"});
     f("min_grip", self.min_grip,
-      ParameterInfo{"1", 0, 1,
-                    "ours: share of them that the motors must hold, too"});
-    f("robust_copies", self.robust_copies,
+      ParameterInfo{
+          "1", 0, 1,
+          "ours: share of disturbed copies that the motors must hold"});
+    f("grip_copies", self.grip_copies,
       ParameterInfo{"1", 1, 1000,
                     "ours: copies while learning; 32 in reports"});
     f("grip_weight", self.grip_weight,

@@ -15,7 +15,6 @@ Parameters MakePaperParameters() {
   p.swarm.aimed_share = 0.0;
   p.swarm.niches = false;
   p.swarm.hold_on_whole = false;
-  p.swarm.min_robustness = 0.0;
   p.swarm.iterations = 120;
   p.swarm.min_grip = 0.0;
   p.swarm.grip_weight = 0.0;

@@ -43,7 +43,7 @@ Velocity CalcDifference(const HandPosture& to, const HandPosture& from) {
 struct FoundGrasp {
   Grasp grasp;
   double gripped{0.0};  // Of its disturbed copies.
-  bool robust{false};   // Only these are kept.
+  bool sure{false};     // Only these are kept.
 };
 
 struct Particle {
@@ -237,7 +237,7 @@ class Swarm {
     if (promising) {
       particle.found = FindGrasp(particle.here.X_OH, q, seed);
       // Others would gather there in vain.
-      const bool kept = particle.found && particle.found->robust;
+      const bool kept = particle.found && particle.found->sure;
       if (!kept && swarm_.shun_failed) return;
     }
     const double measure =
@@ -263,10 +263,8 @@ class Swarm {
       // The rest of the object may be in the way of open fingers.
       if (!IsReachable(hand_, grasp, obstacle_)) continue;
       if (!HoldsOnWhole(grasp)) return {};
-      const Robustness robustness = JudgeCopies(grasp, seed);
-      return FoundGrasp{grasp, robustness.gripped,
-                        robustness.stable >= swarm_.min_robustness &&
-                            robustness.gripped >= swarm_.min_grip};
+      const double gripped = CalcGripped(grasp, seed);
+      return FoundGrasp{grasp, gripped, gripped >= swarm_.min_grip};
     }
     return {};
   }
@@ -287,18 +285,19 @@ class Swarm {
     return swarm_.min_grip > 0.0 || swarm_.grip_weight > 0.0;
   }
 
-  Robustness JudgeCopies(const Grasp& grasp, uint64_t seed) const {
-    if (swarm_.min_robustness == 0.0 && swarm_.min_grip == 0.0) return {};
+  // The share of its disturbed copies, or less when that is too small.
+  double CalcGripped(const Grasp& grasp, uint64_t seed) const {
+    if (swarm_.min_grip == 0.0) return 0.0;
     return CalcRobustness(hand_, grasp, obstacle_, parameters_, seed,
-                          {.copies = swarm_.robust_copies,
-                           .gripped = swarm_.min_grip > 0.0,
+                          {.copies = swarm_.grip_copies,
                            .pushed = false,
-                           .least_gripped = swarm_.min_grip});
+                           .least_gripped = swarm_.min_grip})
+        .gripped;
   }
 
-  // Robust ones are kept; of the others, of each approach, the surest.
+  // Sure ones are kept; of the others, of each approach, the surest.
   void Keep(const FoundGrasp& found) {
-    if (found.robust) {
+    if (found.sure) {
       archive_.Insert(found.grasp);
     } else if (found.gripped > 0.0) {
       auto& almost = almost_[FindApproach(found.grasp.approach_O)];
@@ -349,7 +348,7 @@ class Swarm {
   const uint64_t seed_;
   const double constriction_;
   GraspArchive archive_;
-  // For each approach, the grasps that came nearest to being robust.
+  // For each approach, the grasps that came nearest to being sure.
   std::map<int, std::vector<FoundGrasp>> almost_;
   // For each approach that has any: what was found, or else almost so.
   std::vector<std::vector<const Grasp*>> leads_;

@@ -72,8 +72,7 @@ Robustness PerturbedCopies::Judge(const Grasp& grasp,
     const Copy& copy = copies_[static_cast<size_t>(i)];
     if (!IsStable(copy, grasp)) continue;
     ++stable;
-    if (options.gripped &&
-        IsHeld(copy, grasp, options.pushed ? copy.push : Push::kNone)) {
+    if (IsHeld(copy, grasp, options.pushed ? copy.push : Push::kNone)) {
       ++gripped;
     }
   }

@@ -12,8 +12,7 @@ namespace graspdb {
 /** How closely robustness is looked at: as reported, when nothing is said. */
 struct RobustnessOptions {
   int copies{32};
-  bool gripped{true};  ///< Whether grip matters; else it is left at 0.
-  bool pushed{true};   ///< Whether what is gripped is pushed, too.
+  bool pushed{true};  ///< Whether what is gripped is pushed, too.
   /** When not 0, only grasps that are gripped so often matter: once that is out
    of reach, or not one of the first four is, the shares so far are told. */
   double least_gripped{0.0};

@@ -18,8 +18,6 @@ std::vector<BenchVariant> MakeAblations() {
     p.mapping.affine = false;
     p.mapping.warp_steps = 0;
   });
-  without("robust examples",
-          [](Parameters& p) { p.swarm.min_robustness = 0.0; });
   without("examples that hold on the whole",
           [](Parameters& p) { p.swarm.hold_on_whole = false; });
   without("examples that the motors hold",

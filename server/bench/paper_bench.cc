@@ -35,6 +35,9 @@ constexpr double kSeedingSeconds = 10.0;
 constexpr int kBodyPoints = 1000;
 constexpr int kOtherPoints = 500;
 
+// Which simulated tests judge assembled grasps.
+enum class Tests { kNone, kSixPushes, kAll };
+
 // Without what differs between variants.
 class PaperBench {
  public:
@@ -61,9 +64,11 @@ class PaperBench {
         ++done;
         const double end = static_cast<double>(done) / static_cast<double>(all);
         SubContext part(context_, variant.name, begin, end);
-        GRASPDB_TRY(result,
-                    RunVariant(variant, items, !ablation && order_.physical,
-                               part.context()));
+        GRASPDB_TRY(result, RunVariant(variant, items,
+                                       !order_.physical ? Tests::kNone
+                                       : ablation       ? Tests::kSixPushes
+                                                        : Tests::kAll,
+                                       part.context()));
         report[ablation ? "ablations" : "variants"].push_back(
             std::move(result));
         // What is there so far may be looked at.
@@ -108,7 +113,7 @@ class PaperBench {
   }
 
   Result<Json> RunVariant(const BenchVariant& variant,
-                          const std::vector<BenchItem>& items, bool physical,
+                          const std::vector<BenchItem>& items, Tests tests,
                           ExecutionContext& context) {
     GRASPDB_TRY(service,
                 open_(MakeLearningPath(order_.out, variant.parameters)));
@@ -128,7 +133,7 @@ class PaperBench {
       GRASPDB_TRY(row, DescribeLearning(*service, space));
       result["learning"].push_back(std::move(row));
     }
-    if (physical && seeding_seconds() > 0.0) {
+    if (tests == Tests::kAll && seeding_seconds() > 0.0) {
       GRASPDB_TRY(seeding, RunSeeding(*service, variant, spaces, context));
       result["seeding"] = std::move(seeding);
     }
@@ -140,8 +145,8 @@ class PaperBench {
       };
       SubContext part(context, items[i].category + " " + items[i].name, at(i),
                       at(i + 1));
-      GRASPDB_TRY(
-          rows, RunItem(*service, variant, items[i], physical, part.context()));
+      GRASPDB_TRY(rows,
+                  RunItem(*service, variant, items[i], tests, part.context()));
       for (Json& row : rows) result["rows"].push_back(std::move(row));
     }
     result["pooled"] = Json::object();
@@ -198,18 +203,18 @@ class PaperBench {
   // question, else made and written.
   Result<std::vector<Json>> RunItem(Service& service,
                                     const BenchVariant& variant,
-                                    const BenchItem& item, bool physical,
+                                    const BenchItem& item, Tests tests,
                                     ExecutionContext& context) {
     const std::string key = MakeContentId(fmt::format(
         "{} {} {} {} {} {} {} {}", EngineVersion(), variant.name,
-        ParametersToJson(variant.parameters), order_.seed, sources(), physical,
-        item.name, MakeContentId(item.mesh.bytes)));
+        ParametersToJson(variant.parameters), order_.seed, sources(),
+        static_cast<int>(tests), item.name, MakeContentId(item.mesh.bytes)));
     const std::string name =
         variant.name + " " + item.group + " " + item.category + " " + item.name;
     if (const auto known = row_files_.Read(name, key)) {
       return known->get<std::vector<Json>>();
     }
-    GRASPDB_TRY(rows, MakeRows(service, variant, item, physical, context));
+    GRASPDB_TRY(rows, MakeRows(service, variant, item, tests, context));
     for (Json& row : rows) {
       row["group"] = item.group;
       row["number"] = item.number;
@@ -222,7 +227,7 @@ class PaperBench {
 
   Result<std::vector<Json>> MakeRows(Service& service,
                                      const BenchVariant& variant,
-                                     const BenchItem& item, bool physical,
+                                     const BenchItem& item, Tests tests,
                                      ExecutionContext& context) {
     TransferOrder transfer;
     transfer.mesh = item.mesh;
@@ -234,7 +239,8 @@ class PaperBench {
       GRASPDB_TRY(points, ScanMug(service, item));
       transfer.mesh.bytes = FormatXyz(points);
     }
-    SubContext transferring(context, "", 0.0, physical ? 0.2 : 1.0);
+    SubContext transferring(context, "", 0.0,
+                            tests == Tests::kNone ? 1.0 : 0.2);
     const auto answer =
         service.TransferGrasps(transfer, transferring.context());
     if (!answer) {
@@ -247,11 +253,8 @@ class PaperBench {
       }
       return rows;
     }
-    TestScores further;
-    if (physical) {
-      GRASPDB_TRY(scores, Simulate(service, answer->transfer.id, context));
-      further = std::move(scores);
-    }
+    GRASPDB_TRY(further,
+                Simulate(service, answer->transfer.id, tests, context));
     GRASPDB_TRY(grasps, ReadGrasps(service, answer->transfer.id));
     std::vector<Json> rows;
     GRASPDB_TRY(category, service.store().FindCategory(item.category));
@@ -300,14 +303,17 @@ class PaperBench {
   }
 
   // The stored test, and the two that are published for other hands.
-  Result<TestScores> Simulate(Service& service, const std::string& transfer_id,
-                              ExecutionContext& context) {
+  static Result<TestScores> Simulate(Service& service,
+                                     const std::string& transfer_id,
+                                     Tests wanted, ExecutionContext& context) {
+    TestScores further;
+    if (wanted == Tests::kNone) return further;
     VerifyOrder verify;
     verify.query.transfer_id = transfer_id;
     verify.query.stage = GraspStage::kAssembly;
     SubContext pushing(context, "six pushes", 0.2, 0.6);
     GRASPDB_TRY_VOID(service.VerifyGrasps(verify, pushing.context()));
-    TestScores further;
+    if (wanted != Tests::kAll) return further;
     const std::pair<const char*, PushTest> tests[] = {
         {"net_displacement", MakeNetDisplacementTest()},
         {"lift", MakeLiftTest()}};

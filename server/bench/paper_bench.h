@@ -27,7 +27,7 @@ struct PaperBenchOrder {
   std::string units{"m"};    ///< Of those whose format does not tell.
   std::vector<std::string> categories{"mug", "spray_bottle", "power_drill"};
   std::vector<BenchVariant> variants;   ///< Side by side.
-  std::vector<BenchVariant> ablations;  ///< Counted without a simulator.
+  std::vector<BenchVariant> ablations;  ///< Judged by six pushes only.
   bool quick{false};    ///< One novel object a category, few grasps.
   bool physical{true};  ///< Whether a simulator judges.
   /** For each way to seed the swarm and each part; 0: not compared. Unset: 10,
