@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <console_bridge/console.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
@@ -92,6 +93,8 @@ Result<void> AddLinks(const urdf::ModelInterface& model,
 }  // namespace
 
 Result<HandTree> ReadUrdf(const std::string& urdf) {
+  // urdfdom 3.0 hands the text that it complains of to printf() as a format.
+  console_bridge::noOutputHandler();
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf);
   if (!model) return MakeHandError("the URDF cannot be read");
   const urdf::LinkConstSharedPtr root = model->getRoot();

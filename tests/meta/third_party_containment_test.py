@@ -31,6 +31,7 @@ CONTAINMENT = {
     "sqlite3.h": (["server/store/*"], None),
     "tbb/*": (["engine/*.cc", "server/*.cc"], None),
     "toml++/*": (["server/cli/*.cc", "server/config.cc"], None),
+    "console_bridge/*": (["engine/hand/urdf_reader.cc"], 1),
     "urdf_*": (["engine/hand/urdf_reader.cc"], 1),
     # Not libraries, but not everywhere either: the engine is pure.
     "linux/*": (["server/*.cc"], None),
