@@ -90,24 +90,23 @@ void JobRunner::Notify() {
 Result<StoredJob> JobRunner::Find(const std::string& id) const {
   GRASPDB_TRY(job, service_.store().FindJob(id));
   if (job.Overdue(CalcUnixMilliseconds())) {
-    FailOverdue();
-    GRASPDB_TRY(now, service_.store().FindJob(id));
-    if (now.state != JobState::kQueued) return now;
-    // Told all the same when it could not be written.
+    // Told all the same when it cannot be written.
+    const bool written = FailOverdue().has_value();
     job.state = JobState::kFailed;
     job.error = MakeTimedOut();
+    if (written) {
+      GRASPDB_TRY(now, service_.store().FindJob(id));
+      job = std::move(now);
+    }
   }
   AddLiveState(job);
   return job;
 }
 
-void JobRunner::FailOverdue() const {
-  const auto failed = service_.store().FailOverdueJobs();
-  if (!failed) {
-    TellFailure("", failed.error().message);
-    return;
-  }
-  for (const StoredJob& job : *failed) TellEnd(job, 0.0);
+Result<void> JobRunner::FailOverdue() const {
+  GRASPDB_TRY(failed, service_.store().FailOverdueJobs());
+  for (const StoredJob& job : failed) TellEnd(job, 0.0);
+  return {};
 }
 
 void JobRunner::AddLiveState(StoredJob& job) const {
@@ -162,6 +161,11 @@ JobRunner::Clock::time_point JobRunner::ToClock(int64_t unix_milliseconds) {
          std::chrono::milliseconds(unix_milliseconds - CalcUnixMilliseconds());
 }
 
+Result<std::optional<StoredJob>> JobRunner::Claim(bool slow) {
+  GRASPDB_TRY_VOID(FailOverdue());
+  return service_.store().ClaimJob(slow);
+}
+
 void JobRunner::Work(bool slow) {
   LowerThreadPriority();
   StartHelperThreads(service_.options().threads);
@@ -172,8 +176,7 @@ void JobRunner::Work(bool slow) {
       if (stopping_) return;
       seen = changes_;
     }
-    FailOverdue();
-    auto claimed = service_.store().ClaimJob(slow);
+    auto claimed = Claim(slow);
     if (claimed && *claimed) {
       Run(**claimed);
       continue;

@@ -43,7 +43,7 @@ class JobRunner {
   /** One whose deadline passed while it was queued has failed. */
   Result<StoredJob> Find(const std::string& id) const;
   /** Those whose turn would come too late end, and give place to others. */
-  void FailOverdue() const;
+  Result<void> FailOverdue() const;
   /** Adds progress, stage and eta to a job that runs here. */
   void AddLiveState(StoredJob& job) const;
   /** What a running transfer has found, in the order of finding, from the
@@ -71,6 +71,7 @@ class JobRunner {
   // @param unix_milliseconds  A job's deadline.
   static Clock::time_point ToClock(int64_t unix_milliseconds);
   void Work(bool slow);
+  Result<std::optional<StoredJob>> Claim(bool slow);
   void Run(StoredJob job);
   // Whether it runs here.
   bool CancelLive(const std::string& id);

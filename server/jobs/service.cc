@@ -276,7 +276,7 @@ Result<StoredJob> Service::Submit(JobKind kind, bool slow,
                                   const std::string& request,
                                   const std::string& payload,
                                   const JobTerms& terms) {
-  runner_->FailOverdue();
+  GRASPDB_TRY_VOID(runner_->FailOverdue());
   GRASPDB_TRY(job, store_->InsertJob(kind, slow, request, payload, terms,
                                      options_.max_queued_jobs));
   runner_->Wake();

@@ -750,6 +750,24 @@ class FullDisk {
   rlimit before_{};
 };
 
+TEST_F(ServiceTest, AFullDiskDoesNotHideThatAJobMissedItsDeadline) {
+  const auto service = MakeService(Copy("imported"));
+  LearnOrder lesson;
+  lesson.object_id = FindExample(*service);
+  const auto queued = service->SubmitLearn(lesson, {.deadline = 0.1}).value();
+  {
+    const FullDisk full;
+    const auto missed = service->WaitForJob(queued.id, kLongEnough).value();
+    EXPECT_EQ(missed.state, JobState::kFailed);
+    EXPECT_EQ(missed.error.value().code, ErrorCode::kDeadlineExceeded);
+    EXPECT_EQ(service->store().FindJob(queued.id).value().state,
+              JobState::kQueued);
+  }
+  EXPECT_EQ(service->FindJob(queued.id).value().state, JobState::kFailed);
+  EXPECT_EQ(service->store().FindJob(queued.id).value().state,
+            JobState::kFailed);
+}
+
 TEST_F(ServiceTest, HowAJobEndedIsWrittenOnceTheDiskHasRoom) {
   const auto service = MakeService(Copy("imported"));
   ASSERT_TRUE(service->StartWorkers());
