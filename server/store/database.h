@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -136,9 +137,16 @@ class Database {
 
  private:
   friend class Statement;
+  friend class Transaction;
+  using Clock = std::chrono::steady_clock;
   [[noreturn]] void Fail(int code) const;
+  /** Before a write: who has long written without a pause makes one, for
+   others to find the database unlocked. */
+  void GiveWay();
 
   sqlite3* handle_{nullptr};
+  Clock::time_point last_pause_;
+  Clock::time_point last_write_;
   std::multimap<std::string, sqlite3_stmt*> idle_;
 };
 
@@ -154,6 +162,7 @@ class Transaction {
 
  private:
   Database& database_;
+  Kind kind_;
   bool open_{true};
 };
 

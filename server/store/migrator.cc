@@ -59,11 +59,9 @@ Result<void> InspectHeader(const std::string& path) {
 
 // What the header cannot tell: a newer version still in the write-ahead log,
 // and damage.
-Result<void> InspectContent(const std::string& path) {
-  const bool has_log = fs::exists(path + "-wal");
-  const auto inspect = [&] {
-    Database database(
-        path, has_log ? Database::Mode::kReadOnly : Database::Mode::kImmutable);
+Result<void> InspectContent(const std::string& path, Database::Mode mode) {
+  return RunStorage([&] {
+    Database database(path, mode);
     const int64_t version = database.QueryInt("PRAGMA user_version");
     if (version > std::ssize(Migrations())) {
       throw StorageFailure(Refuse(path, "was written by a newer graspdb",
@@ -76,8 +74,20 @@ Result<void> InspectContent(const std::string& path) {
             Refuse(path, "is damaged: " + found, "restore a backup of it"));
       }
     }
-  };
-  return RunStorage(inspect);
+  });
+}
+
+// A file without a log is read as it lies there, with no file made beside it,
+// unless another program writes into it meanwhile: then as it does.
+Result<void> InspectContent(const std::string& path) {
+  const auto has_log = [&] { return fs::exists(path + "-wal"); };
+  if (has_log()) return InspectContent(path, Database::Mode::kReadOnly);
+  const fs::file_time_type before = fs::last_write_time(path);
+  auto inspected = InspectContent(path, Database::Mode::kImmutable);
+  if (!inspected && (has_log() || fs::last_write_time(path) != before)) {
+    inspected = InspectContent(path, Database::Mode::kReadOnly);
+  }
+  return inspected;
 }
 
 }  // namespace

@@ -69,10 +69,9 @@ TEST_F(BackupTest, HoldsTheSameRows) {
 }
 
 TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
-  std::atomic<bool> stop{false};
   std::atomic<int> acknowledged{0};
-  std::thread writer([&] {
-    while (!stop) {
+  const std::jthread writer([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
       const auto written =
           store_->InsertJob(JobKind::kLearn, true, "{}", "payload", {});
       EXPECT_TRUE(written);
@@ -91,8 +90,6 @@ TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
     EXPECT_LE(jobs, after);
     EXPECT_THAT((*restored)->Check().value().problems, IsEmpty());
   }
-  stop = true;
-  writer.join();
   EXPECT_GT(acknowledged, 0);
 }
 

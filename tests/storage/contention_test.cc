@@ -1,3 +1,4 @@
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -7,7 +8,10 @@
 
 #include <gmock/gmock.h>
 
+#include "server/store/database.h"
+#include "server/store/migrator.h"
 #include "server/store/store.h"
+#include "tests/support/faulty_vfs.h"
 #include "tests/support/rounds.h"
 #include "tests/support/stored_records.h"
 #include "tests/support/temp_folder.h"
@@ -62,11 +66,23 @@ Report WriteUntil(const std::string& path, int process, size_t num_threads,
   return report;
 }
 
-// In one process, as a server's, or in several.
-class Contention : public ::testing::TestWithParam<int> {};
+struct Writers {
+  const char* name;
+  int processes;          ///< One, as a server's, or several.
+  int disk_milliseconds;  ///< What each change on the disk takes at least.
+};
+
+class Contention : public ::testing::TestWithParam<Writers> {};
 
 TEST_P(Contention, SixteenWritersAreNeverToldThatItIsLocked) {
+  const auto [name, processes, disk_milliseconds] = GetParam();
   const TempFolder folder;
+  if (disk_milliseconds > 0) {
+    FaultyVfs::Get().Watch(folder.path());
+    FaultyVfs::Get().set_before_change([pause = disk_milliseconds] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+    });
+  }
   const std::string path = folder.File("a.db");
   {
     auto store = Store::Open(path);
@@ -75,10 +91,10 @@ TEST_P(Contention, SixteenWritersAreNeverToldThatItIsLocked) {
   const auto end = Clock::now() + std::chrono::seconds(CountRounds(3));
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
-  for (int process = 0; process < GetParam(); ++process) {
+  for (int process = 0; process < processes; ++process) {
     if (fork() != 0) continue;
     const Report report = WriteUntil(
-        path, process, static_cast<size_t>(kWriters / GetParam()), end);
+        path, process, static_cast<size_t>(kWriters / processes), end);
     const bool told = write(ends[1], &report, sizeof(report)) == sizeof(report);
     _exit(told ? 0 : 1);
   }
@@ -97,7 +113,8 @@ TEST_P(Contention, SixteenWritersAreNeverToldThatItIsLocked) {
   close(ends[0]);
   while (wait(nullptr) > 0) {
   }
-  EXPECT_EQ(reports, GetParam());
+  EXPECT_EQ(reports, processes);
+  if (disk_milliseconds > 0) FaultyVfs::Get().Watch("");
   auto store = Store::Open(path);
   EXPECT_EQ((*store)->Count().value().objects, written);
   EXPECT_THAT((*store)->Check().value().problems, IsEmpty());
@@ -105,7 +122,46 @@ TEST_P(Contention, SixteenWritersAreNeverToldThatItIsLocked) {
   RecordProperty("p99_milliseconds", static_cast<int>(1e3 * slowest));
 }
 
-INSTANTIATE_TEST_SUITE_P(Processes, Contention, ::testing::Values(1, 4));
+// Opening looks the file over: that another program begins to write meanwhile,
+// or ends, is no damage.
+TEST(ContentionWhileOpening, IsNotTakenForDamage) {
+  const TempFolder folder;
+  const std::string path = folder.File("a.db");
+  CreateDatabaseFile(path);
+  Database(path, Database::Mode::kReadWrite)
+      .Execute(
+          "CREATE TABLE other(x UNIQUE);"
+          "WITH RECURSIVE rows(i) AS (SELECT 1 UNION ALL"
+          " SELECT i + 1 FROM rows WHERE i < 20000)"
+          " INSERT INTO other SELECT randomblob(100) FROM rows");
+  const pid_t child = fork();
+  if (child == 0) {
+    for (;;) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      // Its end, the only connection's, writes the log into the file.
+      Database database(path, Database::Mode::kReadWrite);
+      database.Execute(
+          "PRAGMA synchronous = OFF;"
+          "UPDATE other SET x = randomblob(100) WHERE rowid % 1000 = 1");
+    }
+  }
+  for (int i = 0; i < CountRounds(100); ++i) {
+    const auto file = InspectDatabaseFile(path);
+    EXPECT_TRUE(file) << file.error().message;
+  }
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Contention,
+                         ::testing::Values(Writers{"OneProcess", 1, 0},
+                                           Writers{"FourProcesses", 4, 0},
+                                           Writers{"FourOnASlowDisk", 4, 1}),
+                         [](const auto& writers) {
+                           return writers.param.name;
+                         });
 
 }  // namespace
 }  // namespace graspdb

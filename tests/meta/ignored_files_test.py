@@ -1,0 +1,25 @@
+"""What the tests read is in the repository: git ignores none of it."""
+
+import subprocess
+import unittest
+
+from source_tree import ROOT
+
+FOLDERS = ("data", "docker", "engine", "schema", "server", "tests")
+
+
+class IgnoredFilesTest(unittest.TestCase):
+    def test_git_ignores_nothing_but_caches(self):
+        if not (ROOT / ".git").exists():
+            self.skipTest("not a git checkout")
+        listed = subprocess.run(
+            ["git", "-c", "safe.directory=*", "ls-files", "--others", "--ignored",
+             "--exclude-standard", "--", *FOLDERS],
+            cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+        ignored = [path for path in listed
+                   if "/__pycache__/" not in path and "/.hypothesis/" not in path]
+        self.assertEqual(ignored, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
