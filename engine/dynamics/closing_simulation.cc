@@ -257,7 +257,7 @@ class ClosingRun {
 
   // Links and object have moved on relative to each other.
   void FindTouches() {
-    X_WL_ = CalcLinkPoses(hand_.model(), state_.q);
+    CalcLinkPoses(hand_.model(), state_.q, X_WL_);
     const RigidTransform X_OW = CalcObjectPose().Inverse();
     const double object_speed = CalcObjectSpeed();
     touches_.clear();

@@ -70,15 +70,22 @@ Eigen::VectorXd HandModel::CalcActuators(const Eigen::VectorXd& q) const {
 
 std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
                                           const Eigen::VectorXd& q) {
+  std::vector<RigidTransform> X_HL;
+  CalcLinkPoses(hand, q, X_HL);
+  return X_HL;
+}
+
+void CalcLinkPoses(const HandModel& hand, const Eigen::VectorXd& q,
+                   std::vector<RigidTransform>& X_HL) {
   GRASPDB_EXPECTS(q.size() == hand.num_joints());
-  std::vector<RigidTransform> X_HL(hand.num_links());
+  X_HL.resize(hand.num_links());
+  X_HL[0] = {};
   for (int i = 1; i < hand.num_links(); ++i) {
     const HandLink& link = hand.links()[i];
     const HandJoint& joint = hand.joints()[link.joint];
     X_HL[i] =
         X_HL[link.parent] * joint.X_PJ * CalcJointMotion(joint, q[link.joint]);
   }
-  return X_HL;
 }
 
 RigidTransform CalcLinkPose(const HandModel& hand, const Eigen::VectorXd& q,

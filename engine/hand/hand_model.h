@@ -121,6 +121,9 @@ struct HandConfiguration {
 /** X_HL of every link, in the model's order. @pre q.size() == num_joints(). */
 std::vector<RigidTransform> CalcLinkPoses(const HandModel& hand,
                                           const Eigen::VectorXd& q);
+/** The same for loops: asks for no memory once X_HL has been used. */
+void CalcLinkPoses(const HandModel& hand, const Eigen::VectorXd& q,
+                   std::vector<RigidTransform>& X_HL);
 
 /** X_HL of one link. @pre q.size() == num_joints(). */
 RigidTransform CalcLinkPose(const HandModel& hand, const Eigen::VectorXd& q,

@@ -58,14 +58,9 @@ Result<HandFiles> ReadHandFolder(const fs::path& folder) {
 }
 
 Result<void> AddCategory(Service& service, const StoredCategory& category) {
-  const auto known = service.store().FindCategory(category.name);
-  if (!known) {
-    const auto added = service.AddCategory(category);
-    return added ? Result<void>() : Result<void>(added.error());
-  }
-  StoredCategory same = *known;
-  same.created_at = category.created_at;
-  if (same == category) return {};
+  const auto added = service.AddCategory(category);
+  if (added) return {};
+  if (added.error().code != ErrorCode::kConflict) return added.error();
   const auto updated = service.UpdateCategory(category);
   return updated ? Result<void>() : Result<void>(updated.error());
 }

@@ -142,7 +142,7 @@ Result<std::string> Service::CheckDecoder() const { return decoder_->Check(); }
 
 DecodeCounts Service::CountDecoded() const { return decoder_->counts(); }
 
-Result<StoredCategory> Service::AddCategory(const StoredCategory& category) {
+Result<AddedCategory> Service::AddCategory(const StoredCategory& category) {
   GRASPDB_TRY_VOID(CheckCategory(category));
   return store_->InsertCategory(category);
 }

@@ -107,9 +107,10 @@ class Service {
   BackupFolder& backups() { return backups_; }
 
   // ---- Immediate verbs ------------------------------------------------------
-  /** Checks names and labels, then stores.
-   @retval kConflict when the name is taken. */
-  Result<StoredCategory> AddCategory(const StoredCategory& category);
+  /** Checks names and labels, then stores; the same category a second time
+   changes nothing.
+   @retval kConflict when another has its name. */
+  Result<AddedCategory> AddCategory(const StoredCategory& category);
   Result<StoredCategory> UpdateCategory(const StoredCategory& category);
   /** Decodes a hand's meshes and its URDF, checks that they make a hand, and
    stores it; the same files a second time change nothing.

@@ -26,10 +26,11 @@ Result<HttpResponse> PostCategory(Service& service,
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     GRASPDB_TRY(given, CategoryFromJson(request.body));
-    GRASPDB_TRY(stored, service.AddCategory(given));
-    HttpResponse response = MakeJsonResponse(201, ToJson(stored));
+    GRASPDB_TRY(added, service.AddCategory(given));
+    HttpResponse response =
+        MakeJsonResponse(added.created ? 201 : 200, ToJson(added.category));
     response.headers.emplace_back(
-        "Location", "/v1/categories/" + EncodePercent(stored.name));
+        "Location", "/v1/categories/" + EncodePercent(added.category.name));
     return response;
   });
 }

@@ -140,9 +140,13 @@ void DeleteCategoryLists(Database& database, const std::string& name) {
 
 }  // namespace
 
-Result<StoredCategory> Store::InsertCategory(const StoredCategory& category) {
+Result<AddedCategory> Store::InsertCategory(const StoredCategory& category) {
   return impl_->Write([&](Database& database) {
     if (CountOf(database, "categories WHERE name = ?", category.name) > 0) {
+      const StoredCategory old = ReadCategory(database, category.name);
+      StoredCategory same = category;
+      same.created_at = old.created_at;
+      if (same == old) return AddedCategory{old, false};
       Throw(ErrorCode::kConflict,
             "There is a category '" + category.name + "' already.",
             "PATCH /v1/categories/" + category.name + " changes it", "name");
@@ -151,7 +155,7 @@ Result<StoredCategory> Store::InsertCategory(const StoredCategory& category) {
         .Bind(category.name, category.title, FormatNow())
         .Run();
     InsertCategoryLists(database, category);
-    return ReadCategory(database, category.name);
+    return AddedCategory{ReadCategory(database, category.name), true};
   });
 }
 

@@ -33,6 +33,11 @@ struct GraspSpaceFilter {
   std::string object_id;
 };
 
+struct AddedCategory {
+  StoredCategory category;
+  bool created{false};  ///< False when it was stored before.
+};
+
 /** What a new object is stored with. `record.id` and `record.created_at` are
  given by the store. Parts and their solids run in parallel; both are empty for
  an object without parts. */
@@ -69,8 +74,9 @@ class Store {
   int schema_version() const;
 
   // ---- Categories -----------------------------------------------------------
-  /** @retval kConflict when the name is taken. */
-  Result<StoredCategory> InsertCategory(const StoredCategory& category);
+  /** The same category a second time changes nothing.
+   @retval kConflict when another has its name. */
+  Result<AddedCategory> InsertCategory(const StoredCategory& category);
   /** Replaces title, parts' tasks, adjacency and segmentation settings.
    @retval kNotFound; kConflict when labels change although objects use them. */
   Result<StoredCategory> UpdateCategory(const StoredCategory& category);

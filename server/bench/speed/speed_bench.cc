@@ -1,8 +1,10 @@
 #include "server/bench/speed/speed_bench.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 #include <utility>
 
@@ -137,12 +139,14 @@ class SpeedBench {
     stages.category = order_.category;
     stages.meshes = meshes_;
     stages.sources = order_.quick ? 2 : 8;
+    stages.grasps = order_.quick ? 10 : 100;
     stages.seed = order_.seed;
     stages.stopwatch = stopwatch();
     SubContext part(context_, "stages", 0.4, 0.6);
-    GRASPDB_TRY(rows,
+    GRASPDB_TRY(measured,
                 MeasureStages(*service, decoder_, stages, part.context()));
-    report_["stages"] = EncodeSpeedRows(rows);
+    report_["stages"] = EncodeSpeedRows(measured.rows);
+    curves_ = std::move(measured.curves);
     return {};
   }
 
@@ -183,18 +187,19 @@ class SpeedBench {
       }
     }
     SubContext part(context_, "growth", 0.8, 1.0);
-    GRASPDB_TRY(curves,
+    GRASPDB_TRY(grown,
                 MeasureGrowth(growth, hand_, decoder_, open_, part.context()));
+    std::move(grown.begin(), grown.end(), std::back_inserter(curves_));
     report_["growth"] = Json::array();
-    for (const GrowthCurve& curve : curves) {
+    for (const GrowthCurve& curve : curves_) {
       report_["growth"].push_back(EncodeGrowthCurve(curve));
     }
-    return WritePlots(curves);
+    return WritePlots();
   }
 
   // One of each, and both axes logarithmic: a power law is a straight line.
-  Result<void> WritePlots(const std::vector<GrowthCurve>& curves) const {
-    for (const GrowthCurve& curve : curves) {
+  Result<void> WritePlots() const {
+    for (const GrowthCurve& curve : curves_) {
       PlotOptions options;
       options.title = curve.name;
       options.x_label = curve.x_label;
@@ -220,6 +225,7 @@ class SpeedBench {
   const std::string db_;
   std::shared_ptr<const HandModel> hand_;
   std::vector<TriangleMesh> meshes_;
+  std::vector<GrowthCurve> curves_;
   Json report_;
 };
 

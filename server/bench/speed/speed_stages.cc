@@ -38,7 +38,7 @@ class StageBench {
         order_(order),
         context_(context) {}
 
-  Result<std::vector<SpeedRow>> Run() {
+  Result<StageReport> Run() {
     for (const TriangleMesh& mesh : order_.meshes) {
       context_.ReportProgress("decode and segment", 0.0);
       GRASPDB_TRY_VOID(MeasureDecoding(mesh));
@@ -48,8 +48,10 @@ class StageBench {
     GRASPDB_TRY_VOID(MeasureMapping());
     context_.ReportProgress("transfer", 0.5);
     GRASPDB_TRY_VOID(MeasureTransfer());
+    context_.ReportProgress("learn on one thread and on two", 0.7);
+    GRASPDB_TRY_VOID(MeasureLearning());
     GRASPDB_TRY_VOID(DescribeLearning());
-    return std::move(rows_);
+    return StageReport{std::move(rows_), std::move(curves_)};
   }
 
  private:
@@ -224,28 +226,79 @@ class StageBench {
     }
     request.sources_per_part = order_.sources;
     request.seed = order_.seed;
-    for (const int threads : {1, 2}) {
-      request.threads = threads;
-      const double begin = internal::ReadClock(true);
-      GRASPDB_TRY(result, Transfer(request, context_));
-      Add(fmt::format("transfer of {} sources a part, {} thread{}",
-                      order_.sources, threads, threads > 1 ? "s" : ""),
-          pair.novel.mesh_O.num_triangles(),
-          MakeTiming(internal::ReadClock(true) - begin));
-      if (threads > 1) break;
-      Timing replan, assemble, both;
-      for (const TransferRecord& record : result.records) {
-        if (record.transfer_seconds == 0.0) continue;
-        replan.samples.push_back(record.transfer_seconds);
-        assemble.samples.push_back(record.assembly_seconds);
-        both.samples.push_back(record.transfer_seconds +
-                               record.assembly_seconds);
-      }
-      Add("replan a grasp on its part", std::nullopt, replan);
-      Add("assemble a grasp", std::nullopt, assemble);
-      Add("one grasp, both stages", std::nullopt, both, 0.025);
+    GRASPDB_TRY(
+        result,
+        OnOneThreadAndTwo(
+            fmt::format("transfer of {} sources a part", order_.sources),
+            [&](int threads) {
+              request.threads = threads;
+              return Transfer(request, context_);
+            },
+            [](const TransferResult& a, const TransferResult& b) {
+              return std::equal(a.records.begin(), a.records.end(),
+                                b.records.begin(), b.records.end(),
+                                [](const auto& x, const auto& y) {
+                                  return x.assembled == y.assembled;
+                                });
+            }));
+    Timing replan, assemble, both;
+    for (const TransferRecord& record : result.records) {
+      if (record.transfer_seconds == 0.0) continue;
+      replan.samples.push_back(record.transfer_seconds);
+      assemble.samples.push_back(record.assembly_seconds);
+      both.samples.push_back(record.transfer_seconds + record.assembly_seconds);
     }
+    Add("replan a grasp on its part", std::nullopt, replan);
+    Add("assemble a grasp", std::nullopt, assemble);
+    Add("one grasp, both stages", std::nullopt, both, 0.025);
     return {};
+  }
+
+  // A few grasps of the first example's first part.
+  Result<void> MeasureLearning() {
+    GRASPDB_TRY(examples, LoadExamples(store_, order_.category, ""));
+    GRASPDB_TRY(parts, store_.ReadSolids(examples.ids.front()));
+    LearnRequest request;
+    GRASPDB_TRY(hand, service_.FindHandShape(kDefaultHand));
+    request.hand = hand;
+    request.part_E = parts.front();
+    request.whole_E = examples.meshes.front();
+    request.parameters.swarm.target_grasps = order_.grasps;
+    request.seed = order_.seed;
+    const auto learned = OnOneThreadAndTwo(
+        fmt::format("learn {} grasps of a part", order_.grasps),
+        [&](int threads) {
+          request.threads = threads;
+          return Learn(request, context_);
+        },
+        [](const GraspSpace& a, const GraspSpace& b) {
+          return a.grasps == b.grasps;
+        });
+    return learned ? Result<void>() : Result<void>(learned.error());
+  }
+
+  // Times work(threads). @returns what it made on one thread.
+  template <class Work, class Equal>
+  auto OnOneThreadAndTwo(const std::string& name, const Work& work,
+                         const Equal& equal) -> decltype(work(1)) {
+    GrowthCurve curve{name, "threads", "s", {}, {}};
+    const auto time = [&](int threads) {
+      const double begin = internal::ReadClock(true);
+      auto result = work(threads);
+      curve.x.push_back(threads);
+      curve.y.push_back(internal::ReadClock(true) - begin);
+      return result;
+    };
+    auto one = time(1);
+    if (!one) return one;
+    const auto two = time(2);
+    if (!two) return two.error();
+    if (!equal(*one, *two)) {
+      return Error{ErrorCode::kInternal,
+                   name + ": two threads find other grasps than one."};
+    }
+    curves_.push_back(std::move(curve));
+    return one;
   }
 
   // As the database tells of it.
@@ -270,14 +323,15 @@ class StageBench {
   const StageOrder& order_;
   ExecutionContext& context_;
   std::vector<SpeedRow> rows_;
+  std::vector<GrowthCurve> curves_;
 };
 
 }  // namespace
 
-Result<std::vector<SpeedRow>> MeasureStages(const Service& service,
-                                            const Decoder& decoder,
-                                            const StageOrder& order,
-                                            ExecutionContext& context) {
+Result<StageReport> MeasureStages(const Service& service,
+                                  const Decoder& decoder,
+                                  const StageOrder& order,
+                                  ExecutionContext& context) {
   return StageBench(service, decoder, order, context).Run();
 }
 

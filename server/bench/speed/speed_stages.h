@@ -15,19 +15,25 @@ struct StageOrder {
   std::string category{"mug"};
   std::vector<TriangleMesh> meshes;  ///< Novel ones of the category.
   int sources{8};                    ///< Source grasps per part.
+  int grasps{100};                   ///< Learned once more, of one part.
   uint64_t seed{1};
   StopwatchOptions stopwatch;
 };
 
+struct StageReport {
+  std::vector<SpeedRow> rows;
+  std::vector<GrowthCurve> curves;  ///< Transfer and learning against threads.
+};
+
 /** Times decoding in the helper, segmentation, alignment, the contact map,
  replanning and assembly of one grasp, and learning: all that a request is made
- of, each alone and on one thread.
+ of, each alone and on one thread; the last two on two, too.
  @pre The category's first example has been learned with the default hand.
- @retval kCancelled. */
-Result<std::vector<SpeedRow>> MeasureStages(const Service& service,
-                                            const Decoder& decoder,
-                                            const StageOrder& order,
-                                            ExecutionContext& context);
+ @retval kInternal when two threads find other grasps than one; kCancelled. */
+Result<StageReport> MeasureStages(const Service& service,
+                                  const Decoder& decoder,
+                                  const StageOrder& order,
+                                  ExecutionContext& context);
 
 /** The mesh with so many triangles and the same shape: cut finer, then
  decimated by the decoding helper. @retval as Decoder::Decode(). */

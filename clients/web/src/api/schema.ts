@@ -1960,6 +1960,16 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description The same category was stored before. */
+            readonly 200: {
+                headers: {
+                    readonly Location: components["headers"]["Location"];
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Category"];
+                };
+            };
             /** @description It was added. */
             readonly 201: {
                 headers: {

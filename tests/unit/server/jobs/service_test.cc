@@ -164,7 +164,8 @@ TEST_F(ServiceTest, CategoriesHavePlainNamesAndDifferentLabels) {
   EXPECT_EQ(field_of(R"({"name":"pan","parts":[{"label":"a"},{"label":"a"}]})"),
             "parts");
   EXPECT_EQ(field_of(R"({"name":"pan","parts":[{"label":"a"}]})"), "none");
-  EXPECT_EQ(field_of(R"({"name":"pan","parts":[{"label":"a"}]})"), "name");
+  EXPECT_EQ(field_of(R"({"name":"pan","parts":[{"label":"a"}]})"), "none");
+  EXPECT_EQ(field_of(R"({"name":"pan","parts":[{"label":"b"}]})"), "name");
 }
 
 TEST_F(ServiceTest, AHandIsAddedOnceAndOnlyIfItCanBeRead) {

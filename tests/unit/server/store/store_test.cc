@@ -73,9 +73,13 @@ TEST_F(StoreTest, CategoriesComeBackAsTheyWere) {
 }
 
 TEST_F(StoreTest, ACategoryNameIsTakenOnce) {
-  const auto again = store_->InsertCategory(MakeMugCategory());
-  ASSERT_FALSE(again);
-  EXPECT_EQ(again.error().code, ErrorCode::kConflict);
+  StoredCategory category = MakeMugCategory();
+  const auto again = store_->InsertCategory(category);
+  ASSERT_TRUE(again);
+  EXPECT_FALSE(again->created);
+  category.title += "!";
+  EXPECT_EQ(store_->InsertCategory(category).error().code,
+            ErrorCode::kConflict);
 }
 
 TEST_F(StoreTest, UnknownNamesAreNotFoundWithTheKnownOnesInTheHint) {
@@ -461,6 +465,22 @@ TEST_F(StoreTest, AGraspSpaceThatWasTransferredGoesOnlyWithCascade) {
   EXPECT_TRUE(store_->DeleteGraspSpace(space.id, true));
   EXPECT_EQ(store_->Count().value().grasps, 0);
   EXPECT_EQ(store_->Count().value().transfers, 0);
+}
+
+TEST_F(StoreTest, ParametersGoWithTheLastThatUsedThem) {
+  const auto count_parameter_sets = [&] {
+    return Database(store_->path(), Database::Mode::kReadOnly)
+        .QueryInt("SELECT count(*) FROM parameter_sets");
+  };
+  const StoredObject example = AddObject("e", ObjectRole::kExample);
+  const StoredGraspSpace one = AddSpace(example, 1, 5, 9);
+  const StoredGraspSpace other = AddSpace(example, 1, 6, 9);
+  AddTransfer(one, AddObject("n", ObjectRole::kNovel));
+  EXPECT_EQ(count_parameter_sets(), 2);
+  EXPECT_TRUE(store_->DeleteGraspSpace(one.id, true));
+  EXPECT_EQ(count_parameter_sets(), 1);
+  EXPECT_TRUE(store_->DeleteGraspSpace(other.id, false));
+  EXPECT_EQ(count_parameter_sets(), 0);
 }
 
 TEST_F(StoreTest, ACategoryGoesWithEverythingInItOnlyWithCascade) {
