@@ -15,9 +15,14 @@ from live_server import LiveServer
 FIXTURE = ROOT / "tests" / "storage" / "first_release.db"
 
 
-def rows(database, sql):
-    with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as db:
+def rows(database, sql, how="mode=ro"):
+    with contextlib.closing(sqlite3.connect(f"file:{database}?{how}", uri=True)) as db:
         return db.execute(sql).fetchall()
+
+
+def rows_before(sql):
+    """Of the fixture, with no file made beside it."""
+    return rows(FIXTURE, sql, "immutable=1")
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +42,7 @@ def migrated(binary, database):
 
 
 def test_it_has_all_grasps_as_they_were(migrated):
-    before = dict(rows(FIXTURE, "SELECT id, epsilon FROM grasps"))
+    before = dict(rows_before("SELECT id, epsilon FROM grasps"))
     page = migrated.call("queryGrasps", 200, query={"limit": 1000})
     assert {g["id"]: g["quality"]["epsilon"] for g in page["items"]} == before
     assert len(before) > 10
@@ -47,7 +52,7 @@ def test_it_has_all_else(migrated):
     for operation, table in (("listObjects", "objects"), ("listCategories", "categories"),
                              ("listGraspSpaces", "grasp_spaces"), ("listJobs", "jobs"),
                              ("listTransfers", "transfers")):
-        stored = rows(FIXTURE, f"SELECT count(*) FROM {table}")[0][0]
+        stored = rows_before(f"SELECT count(*) FROM {table}")[0][0]
         assert len(migrated.call(operation, 200)["items"]) == stored > 0, operation
 
 

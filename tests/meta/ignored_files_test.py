@@ -11,7 +11,7 @@ FOLDERS = ("data", "docker", "engine", "schema", "server", "tests")
 class IgnoredFilesTest(unittest.TestCase):
     def test_git_ignores_nothing_but_caches(self):
         if not (ROOT / ".git").exists():
-            self.skipTest("not a git checkout")
+            self.skipTest("not a git checkout: there is nothing to ignore")
         listed = subprocess.run(
             ["git", "-c", "safe.directory=*", "ls-files", "--others", "--ignored",
              "--exclude-standard", "--", *FOLDERS],
