@@ -71,6 +71,13 @@ Result<void> WriteFileBytes(const std::string& path, const std::string& bytes) {
                "check its folder"};
 }
 
+bool SyncToDisk(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool synced = fsync(file) == 0;
+  return close(file) == 0 && synced;
+}
+
 FileLock::FileLock(FileLock&& other) noexcept
     : file_(std::exchange(other.file_, -1)) {}
 

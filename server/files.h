@@ -23,6 +23,11 @@ Result<std::string> ReadFileBytes(const std::string& path);
  @retval kInvalidArgument when it cannot be written. */
 Result<void> WriteFileBytes(const std::string& path, const std::string& bytes);
 
+/** Brings what was written to a file, or which files a folder has, onto the
+ disk.
+ @returns whether it is there. */
+bool SyncToDisk(const std::string& path);
+
 /** A lock that one process at a time holds, until it gives it back or ends,
  however that is. */
 class FileLock {

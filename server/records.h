@@ -34,6 +34,8 @@ struct PageRequest {
 };
 
 /** A part that objects of a category have, and what it is good for. */
+inline constexpr size_t kMostParts = 64;  ///< Of a category.
+inline constexpr size_t kMostTasks = 64;  ///< Of a part.
 struct CategoryPart {
   std::string label;
   std::map<std::string, std::string> tasks;  ///< Task name → note for people.

@@ -190,13 +190,9 @@ class PaperBench {
                                        const StoredGraspSpace& space) {
     GRASPDB_TRY(part, service.store().FindPart(space.part_id));
     GRASPDB_TRY(learned, service.store().ReadGraspSpace(space.id));
-    GRASPDB_TRY(solids, service.store().ReadSolids(part.object_id));
-    const auto solid = std::find_if(
-        solids.begin(), solids.end(),
-        [&](const Part& one) { return one.label == part.label_index; });
-    GRASPDB_EXPECTS(solid != solids.end());
+    GRASPDB_TRY(solids, service.store().ReadSolids({part}));
     return MakeLearningRow(space, static_cast<int>(part.faces.size()),
-                           learned.grasps, solid->solid_O);
+                           learned.grasps, solids.front().solid_O);
   }
 
   // All rows of one object: read, when they were made before for the same

@@ -43,12 +43,9 @@ Result<Json> CompareSeeding(Service& service, const StoredGraspSpace& record,
                             uint64_t seed, ExecutionContext& context) {
   GRASPDB_TRY(model, service.FindHandModel(record.hand));
   GRASPDB_TRY(meshes, service.store().ReadObjectMeshes(record.object_id));
-  GRASPDB_TRY(parts, service.store().ListParts(record.object_id));
-  GRASPDB_TRY(solids, service.store().ReadSolids(record.object_id));
-  const auto at = std::find_if(
-      parts.begin(), parts.end(),
-      [&](const StoredPart& part) { return part.id == record.part_id; });
-  const Part& part_E = solids[static_cast<size_t>(at - parts.begin())];
+  GRASPDB_TRY(stored, service.store().FindPart(record.part_id));
+  GRASPDB_TRY(solids, service.store().ReadSolids({stored}));
+  const Part& part_E = solids.front();
   const HandShape hand(model);
   const Solid part(part_E.solid_O, part_E.num_surface_faces);
   const Solid whole(meshes.work);

@@ -16,7 +16,7 @@
 namespace graspdb {
 namespace {
 
-constexpr JsonLimits kAnswerLimits{256 << 20, 64};
+constexpr JsonLimits kAnswerLimits{256 << 20, 64, 20'000'000};
 constexpr std::chrono::milliseconds kPoll{300};
 constexpr std::chrono::seconds kReadTimeout{660};
 constexpr double kLongestDeadline = 500.0;  // s; a server waits 600 at most.

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "server/codec/json.h"
 #include "server/codec/parameters_json.h"
 
 namespace graspdb {
 namespace {
 
-constexpr JsonLimits kFileLimits{64 << 20, 64};
+// A label per face, or a range: three values each, and no mesh has more faces.
+constexpr uint64_t kMostFaces = 400'000;
+constexpr JsonLimits kFileLimits{64 << 20, 64, 3 * kMostFaces + 1000};
 
 Error Invalid(const std::string& message, const std::string& field) {
   return Error{ErrorCode::kInvalidArgument, message, "", field};
@@ -16,32 +20,36 @@ Error Invalid(const std::string& message, const std::string& field) {
 
 // ---- Categories -------------------------------------------------------------
 
-// An object of notes by task.
-void ReadNotes(JsonFields& fields, const std::string& path, const char* name,
+// Notes by task.
+void ReadNotes(JsonFields& fields, const std::string& name,
                std::map<std::string, std::string>& notes) {
   const Json* json = fields.Find(name);
   if (json == nullptr) return;
-  JsonFields entries(*json, path + "." + name);
-  if (json->is_object()) {
-    for (const auto& [task, note] : json->items()) {
-      entries.Read(task, notes[task]);
-    }
+  if (!json->is_object() || json->size() > kMostTasks) {
+    return fields.Fail(
+        name, fmt::format("an object of at most {} notes by task", kMostTasks));
   }
-  if (const auto read = entries.Finish(); !read) fields.Fail(read.error());
+  for (const auto& [task, note] : json->items()) {
+    if (!note.is_string()) return fields.Fail(name + "." + task, "text");
+    notes[task] = note.get<std::string>();
+  }
 }
 
 void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
   const Json* json = fields.Find("parts");
   if (json == nullptr) return;
-  if (!json->is_array()) return fields.Fail("parts", "a list of parts");
+  if (!json->is_array() || json->size() > kMostParts) {
+    return fields.Fail("parts",
+                       fmt::format("a list of at most {} parts", kMostParts));
+  }
   parts.clear();
   for (size_t i = 0; i < json->size(); ++i) {
     const std::string path = "parts[" + std::to_string(i) + "]";
     JsonFields entry((*json)[i], path);
     CategoryPart part;
     entry.RequireText("label", part.label);
-    ReadNotes(entry, path, "tasks", part.tasks);
-    ReadNotes(entry, path, "keep_free", part.keep_free);
+    ReadNotes(entry, "tasks", part.tasks);
+    ReadNotes(entry, "keep_free", part.keep_free);
     for (const auto& [task, note] : part.keep_free) {
       if (part.tasks.contains(task)) {
         entry.Fail("keep_free", "tasks that do not hold this part");
@@ -52,18 +60,47 @@ void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
   }
 }
 
+// The place of each label among the parts.
+std::map<std::string, int> IndexParts(const std::vector<CategoryPart>& parts) {
+  std::map<std::string, int> indices;
+  for (const CategoryPart& part : parts) {
+    indices.emplace(part.label, static_cast<int>(indices.size()));
+  }
+  return indices;
+}
+
+// Pairs of labels stay so, wherever the labels stand now; those of a label that
+// is gone go.
+void MoveTopology(const std::vector<CategoryPart>& before,
+                  StoredCategory& category) {
+  const std::map<std::string, int> indices = IndexParts(category.parts);
+  const auto index_of = [&](int old) {
+    const auto found = indices.find(before[static_cast<size_t>(old)].label);
+    return found == indices.end() ? -1 : found->second;
+  };
+  for (auto& [a, b] : category.adjacency) {
+    a = index_of(a);
+    b = index_of(b);
+  }
+  std::erase_if(category.adjacency, [](const std::pair<int, int>& pair) {
+    return pair.first < 0 || pair.second < 0;
+  });
+}
+
 // Pairs of labels become pairs of label indices.
 void ReadTopology(JsonFields& fields, StoredCategory& category) {
   const Json* json = fields.Find("topology");
   if (json == nullptr) return;
   const char* takes = "a list of pairs of the category's labels";
-  if (!json->is_array()) return fields.Fail("topology", takes);
+  if (!json->is_array() || json->size() > kMostParts * (kMostParts - 1) / 2) {
+    return fields.Fail("topology", takes);
+  }
   category.adjacency.clear();
+  const std::map<std::string, int> indices = IndexParts(category.parts);
   const auto index_of = [&](const Json& label) {
-    for (size_t i = 0; i < category.parts.size(); ++i) {
-      if (label == category.parts[i].label) return static_cast<int>(i);
-    }
-    return -1;
+    if (!label.is_string()) return -1;
+    const auto found = indices.find(label.get<std::string>());
+    return found == indices.end() ? -1 : found->second;
   };
   for (const Json& pair : *json) {
     if (!pair.is_array() || pair.size() != 2) {
@@ -78,7 +115,9 @@ void ReadTopology(JsonFields& fields, StoredCategory& category) {
 
 void ReadCategoryFields(JsonFields& fields, StoredCategory& category) {
   fields.Read("title", category.title);
+  const std::vector<CategoryPart> before = category.parts;
   ReadParts(fields, category.parts);
+  MoveTopology(before, category);
   ReadTopology(fields, category);
   if (const Json* settings = fields.Find("segmentation")) {
     auto read =
@@ -113,9 +152,6 @@ std::vector<CategoryExample> ReadExamples(JsonFields& fields,
 }
 
 // ---- Labels -----------------------------------------------------------------
-
-// No mesh has more faces.
-constexpr uint64_t kMostFaces = 400'000;
 
 // As a part's label must be: what is repeated per face is not to be long.
 bool IsLabel(const std::string& text) {

@@ -15,7 +15,7 @@ Error Malformed(const std::string& what, size_t byte) {
 // Builds the value while the parser, which does not recurse, reads it.
 class Builder : public nlohmann::json_sax<Json> {
  public:
-  explicit Builder(int max_depth) : max_depth_(max_depth) {}
+  explicit Builder(const JsonLimits& limits) : limits_(limits) {}
 
   bool null() override { return Add(nullptr); }
   bool boolean(bool value) override { return Add(value); }
@@ -65,40 +65,46 @@ class Builder : public nlohmann::json_sax<Json> {
     return false;
   }
   // Where a new value goes. Values on the path to it never move.
-  Json& Place(Json value) {
+  Json* Place(Json value) {
+    if (++num_values_ > limits_.max_values) {
+      fault_ = Error{ErrorCode::kTooLarge,
+                     "The JSON has more than " +
+                         std::to_string(limits_.max_values) + " values.",
+                     "send less at once"};
+      return nullptr;
+    }
     if (open_.empty()) {
       root_ = std::move(value);
-      return root_;
+      return &root_;
     }
     Json& parent = *open_.back().value;
     if (parent.is_array()) {
       parent.push_back(std::move(value));
-      return parent.back();
+      return &parent.back();
     }
     // The base's function, since keys are known to differ.
     auto& members = parent.get_ref<Json::object_t&>();
     members.Json::object_t::Container::emplace_back(std::move(name_),
                                                     std::move(value));
-    return members.back().second;
+    return &members.back().second;
   }
-  bool Add(Json value) {
-    Place(std::move(value));
-    return true;
-  }
+  bool Add(Json value) { return Place(std::move(value)) != nullptr; }
   bool Open(Json value) {
-    if (static_cast<int>(open_.size()) == max_depth_) {
-      return Refuse("more than " + std::to_string(max_depth_) +
+    if (static_cast<int>(open_.size()) == limits_.max_depth) {
+      return Refuse("more than " + std::to_string(limits_.max_depth) +
                     " nested brackets");
     }
-    open_.push_back({&Place(std::move(value)), {}});
-    return true;
+    Json* const place = Place(std::move(value));
+    if (place != nullptr) open_.push_back({place, {}});
+    return place != nullptr;
   }
   bool Close() {
     open_.pop_back();
     return true;
   }
 
-  int max_depth_;
+  const JsonLimits limits_;
+  size_t num_values_{0};
   Json root_;
   std::vector<Level> open_;
   std::string name_;
@@ -119,7 +125,7 @@ Result<Json> ParseJson(std::string_view text, const JsonLimits& limits) {
                      " are read.",
                  "send less at once"};
   }
-  Builder builder(limits.max_depth);
+  Builder builder(limits);
   if (!Json::sax_parse(text.begin(), text.end(), &builder)) {
     return builder.fault().value_or(Malformed("something unexpected", 0));
   }

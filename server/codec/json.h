@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 struct JsonLimits {
   size_t max_bytes{1 << 20};
   int max_depth{64};
+  size_t max_values{100'000};  ///< At all depths: "[]," takes fifty bytes.
 };
 
 /** The only way in for JSON that others wrote. Refuses what RFC 8259 does not
@@ -28,7 +29,8 @@ struct JsonLimits {
  keys, numbers that are not finite doubles (1e400, NaN), text that is not UTF-8,
  anything after the value.
  @retval kInvalidArgument saying what is wrong and at which byte.
- @retval kTooLarge beyond max_bytes, before anything is parsed. */
+ @retval kTooLarge beyond max_bytes, before anything is parsed, or beyond
+   max_values. */
 Result<Json> ParseJson(std::string_view text, const JsonLimits& limits = {});
 
 /** Reads the members of one object, each by name and type. The first fault is

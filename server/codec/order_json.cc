@@ -12,8 +12,7 @@ namespace graspdb {
 namespace {
 
 // Labels of every face make an order large.
-constexpr JsonLimits kOrderLimits{64 << 20, 64};
-constexpr size_t kMostParts = 64;
+constexpr JsonLimits kOrderLimits{64 << 20, 64, 1'300'000};
 
 void ReadParameters(JsonFields& fields, Parameters& parameters) {
   const Json* json = fields.Find("parameters");
@@ -113,6 +112,9 @@ SegmentOrder ReadSegmentOrder(JsonFields& fields) {
 LearnOrder ReadLearnOrder(JsonFields& fields) {
   LearnOrder order;
   fields.Read("parts", order.part_labels);
+  if (order.part_labels.size() > kMostParts) {
+    fields.Fail("parts", "at most 64 labels");
+  }
   fields.Read("hands", order.hands);
   ReadParameters(fields, order.parameters);
   fields.ReadSeed("seed", order.seed);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -57,6 +58,7 @@ bool Connection::FillBuffer(Clock::time_point deadline) {
 
 std::variant<MessageHead, HeadFault, Connection::Closed>
 Connection::ReadHead() {
+  buffer_.erase(0, std::exchange(consumed_, 0));
   if (buffer_.empty() &&
       !WaitReadable(Clock::now() + limits_.idle_timeout, true)) {
     return Closed{};
@@ -103,9 +105,12 @@ long Connection::ReadBody(char* bytes, size_t size) {
     count = Receive(bytes, size, body_deadline_);
   } else {
     if (buffer_.empty() && !FillBuffer(body_deadline_)) return -1;
-    count = static_cast<long>(std::min(size, buffer_.size()));
-    std::copy_n(buffer_.begin(), count, bytes);
-    buffer_.erase(0, static_cast<size_t>(count));
+    count = static_cast<long>(buffer_.copy(bytes, size, consumed_));
+    consumed_ += static_cast<size_t>(count);
+    if (consumed_ == buffer_.size()) {
+      buffer_.clear();
+      consumed_ = 0;
+    }
   }
   if (count <= 0) return -1;  // The client ended in the middle of a body.
   if (!chunked_) remaining_ -= static_cast<size_t>(count);
@@ -113,6 +118,9 @@ long Connection::ReadBody(char* bytes, size_t size) {
 }
 
 bool Connection::Write(std::string_view bytes) {
+  const auto deadline =
+      Clock::now() + limits_.write_timeout +
+      std::chrono::seconds(bytes.size() / limits_.least_bytes_per_second);
   while (!bytes.empty()) {
     const ssize_t count =
         send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
@@ -123,8 +131,9 @@ bool Connection::Write(std::string_view bytes) {
     if (errno == EINTR) continue;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
     pollfd file{socket_, POLLOUT, 0};
-    const auto patience =
-        std::chrono::milliseconds(limits_.write_timeout).count();
+    const auto patience = std::min<int64_t>(
+        std::chrono::milliseconds(limits_.write_timeout).count(),
+        CalcMillisecondsUntil(deadline));
     if (poll(&file, 1, static_cast<int>(patience)) == 0) return false;
   }
   return true;

@@ -53,7 +53,8 @@ class Connection {
   const int socket_;
   const int stop_fd_;
   const HttpLimits& limits_;
-  std::string buffer_;  ///< Received, not yet consumed.
+  std::string buffer_;  ///< Received; empty when all of it is consumed.
+  size_t consumed_{0};  ///< Of the buffer's bytes, the first so many.
   size_t remaining_{0};
   bool chunked_{false};
   bool expects_continue_{false};

@@ -23,6 +23,7 @@
 #include "server/http/log_line.h"
 #include "server/http/problem.h"
 #include "server/http/request_body.h"
+#include "server/http/site.h"
 #include "server/http/target.h"
 
 namespace graspdb {
@@ -58,7 +59,7 @@ class LibraryStream final : public httplib::Stream {
   bool is_readable() const override { return true; }
   bool is_writable() const override { return true; }
   ssize_t read(char* bytes, size_t size) override {
-    if (position_ == head_.size()) return connection_.ReadBody(bytes, size);
+    if (position_ == head_.size()) return ReadBody(bytes, size);
     const size_t count = head_.copy(bytes, size, position_);
     position_ += count;
     return static_cast<ssize_t>(count);
@@ -73,8 +74,19 @@ class LibraryStream final : public httplib::Stream {
   socket_t socket() const override { return 0; }
 
  private:
+  // The library reads a line between two chunks byte by byte, and keeps it
+  // however long it is.
+  ssize_t ReadBody(char* bytes, size_t size) {
+    constexpr size_t kLongestLine = 4096;
+    const long count = connection_.ReadBody(bytes, size);
+    const bool in_line = size == 1 && count == 1 && *bytes != '\n';
+    line_bytes_ = in_line ? line_bytes_ + 1 : 0;
+    return line_bytes_ > kLongestLine ? -1 : count;
+  }
+
   std::string head_;
   size_t position_{0};
+  size_t line_bytes_{0};
   Connection& connection_;
 };
 
@@ -147,14 +159,17 @@ struct HttpServer::Impl : httplib::Server {
   void ServeConnection(socket_t socket);
   void ServeExchange(Connection& connection, Exchange& exchange);
   void Answer(const httplib::ContentReader* reader, httplib::Response& out);
-  static void Stream(HttpResponse response, Exchange& exchange,
-                     httplib::Response& out);
+  void Stream(HttpResponse response, Exchange& exchange,
+              httplib::Response& out);
   HttpResponse Route(Exchange& exchange, const httplib::ContentReader* reader);
   HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
                       HttpRequest& request,
                       const httplib::ContentReader* reader);
   void Log(const std::string& line) const {
     if (options.log) options.log(line);
+  }
+  void LogInternal(const std::string& id, const std::string& cause) const {
+    Log(MakeLogLine("error", "internal", {{"id", id}, {"cause", cause}}));
   }
 
   Router router;
@@ -213,7 +228,12 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
     sockets.insert(socket);
     if (cut) shutdown(socket, SHUT_RDWR);
   }
-  ServeConnection(socket);
+  try {
+    ServeConnection(socket);
+  } catch (const std::exception& exception) {  // Say, for want of memory.
+    LogInternal("", exception.what());
+    current_exchange = nullptr;
+  }
   {
     const std::lock_guard lock(sockets_mutex);
     sockets.erase(socket);
@@ -297,6 +317,11 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
   for (const auto& [name, value] : response.headers) {
     out.set_header(name, value);
   }
+  // Nothing that others uploaded is to act as a page of this server.
+  if (!out.has_header("Content-Security-Policy")) {
+    out.set_header("Content-Security-Policy",
+                   "default-src 'none'; frame-ancestors 'none'; sandbox");
+  }
   exchange.status = response.status;
   exchange.bytes_out = response.body.size();
   if (response.next_piece) {
@@ -310,9 +335,15 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
 
 void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
                               httplib::Response& out) {
-  const auto send = [next = std::move(response.next_piece), &exchange](
+  const auto send = [this, next = std::move(response.next_piece), &exchange](
                         size_t, httplib::DataSink& sink) {
-    const auto piece = next();
+    std::optional<std::string> piece;
+    try {
+      piece = next();
+    } catch (const std::exception& exception) {
+      LogInternal(exchange.id, exception.what());
+      return false;  // The client sees that the answer is cut short.
+    }
     if (!piece) {
       sink.done();
       return true;
@@ -333,6 +364,9 @@ HttpResponse HttpServer::Impl::Route(Exchange& exchange,
   if (exchange.fault) {
     return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
                        exchange.id);
+  }
+  if (const auto fault = FindForeignSite(exchange.head, IsLoopback(host))) {
+    return MakeProblem(HttpFault::kMalformedRequest, *fault, "", exchange.id);
   }
   const auto target = ParseTarget(exchange.head.target);
   if (!target) {
@@ -393,9 +427,10 @@ HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
     error = {ErrorCode::kOverloaded, "The server is stopping.",
              "send it again when it is back"};
   }
-  const bool internal = error.code == ErrorCode::kInternal;
-  if (internal || error.code == ErrorCode::kStorage) {
-    Log(MakeLogLine("error", internal ? "internal" : "storage",
+  if (error.code == ErrorCode::kInternal)
+    LogInternal(request.id, error.message);
+  if (error.code == ErrorCode::kStorage) {
+    Log(MakeLogLine("error", "storage",
                     {{"id", request.id}, {"cause", error.message}}));
   }
   return MakeProblem(error, request.id);

@@ -14,15 +14,18 @@ struct HttpLimits {
   size_t max_fields{100};
   size_t max_json_bytes{4 << 20};      ///< Body of a JSON operation.
   int64_t max_upload_bytes{64 << 20};  ///< A file, or a whole form.
-  /** Of all uploads that are there at once, but for the first 64 KiB of each;
-   at least two of the largest. */
+  /** Of all bodies that are there at once, but for the first 64 KiB of each; at
+   least two of the largest. */
   size_t max_held_bytes{128 << 20};
   size_t max_form_parts{32};
+  size_t max_form_head_bytes{8192};      ///< The header fields of a form part.
   size_t max_form_field_bytes{4096};     ///< A form part without a file.
   std::chrono::seconds idle_timeout{5};  ///< Between two requests.
   std::chrono::seconds head_timeout{10};
   std::chrono::seconds body_timeout{120};
   std::chrono::seconds write_timeout{30};  ///< Without a byte getting away.
+  /** A client that takes less of an answer, after write_timeout, is cut off. */
+  size_t least_bytes_per_second{32 << 10};
   size_t max_requests_per_connection{100'000};
   /** What is in flight when the server is to stop has so long to end. */
   std::chrono::seconds drain_timeout{5};

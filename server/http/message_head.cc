@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "server/http/field_text.h"
+
 namespace graspdb {
 namespace {
 
@@ -28,20 +30,6 @@ bool HasControls(std::string_view text) {
     const auto byte = static_cast<unsigned char>(c);
     return (byte < 0x20 && c != '\t') || byte == 0x7F;
   });
-}
-
-std::string ToLower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
-
-std::string_view Trim(std::string_view text) {
-  const size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
 MaybeFault ParseRequestLine(std::string_view line, const HttpLimits& limits,
@@ -84,8 +72,8 @@ MaybeFault ParseField(std::string_view line, const HttpLimits& limits,
   if (colon == std::string_view::npos || !IsToken(line.substr(0, colon))) {
     return Malformed("A header field is not NAME: VALUE on one line.");
   }
-  const std::string name = ToLower(line.substr(0, colon));
-  const std::string_view value = Trim(line.substr(colon + 1));
+  const std::string name = ToLowerAscii(line.substr(0, colon));
+  const std::string_view value = TrimBlanks(line.substr(colon + 1));
   const bool fresh = head.fields.emplace(name, value).second;
   const bool unique = name == "content-length" || name == "host" ||
                       name == "transfer-encoding" || name == "content-type";
@@ -100,7 +88,7 @@ MaybeFault FindFraming(MessageHead& head) {
   const auto length = head.fields.find("content-length");
   if (coding != head.fields.end()) {
     if (length != head.fields.end() || head.http_1_0 ||
-        ToLower(coding->second) != "chunked") {
+        ToLowerAscii(coding->second) != "chunked") {
       return Malformed("Transfer-Encoding is only read as chunked, alone.");
     }
     head.chunked = true;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "server/http/field_text.h"
+
 namespace graspdb {
 namespace {
 
@@ -13,26 +15,12 @@ Error Malformed(const std::string& what) {
           "Send the file as curl -F mesh=@FILE does.", "mesh"};
 }
 
-bool EqualsIgnoringCase(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
-}
-
-std::string_view Trim(std::string_view text) {
-  const size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 /** Takes a quoted string, or text up to ";", off the front. */
 std::string TakeValue(std::string_view& text) {
   std::string value;
   if (!text.starts_with('"')) {
     const size_t end = std::min(text.find(';'), text.size());
-    value = Trim(text.substr(0, end));
+    value = TrimBlanks(text.substr(0, end));
     text.remove_prefix(end);
     return value;
   }
@@ -57,13 +45,12 @@ Result<FormPart> ParsePartHead(std::string_view head) {
     head.remove_prefix(end == std::string_view::npos ? head.size() : end + 2);
     const size_t colon = line.find(':');
     if (colon == std::string_view::npos) return Malformed("a header line.");
-    const std::string_view name = line.substr(0, colon);
-    const std::string_view value = Trim(line.substr(colon + 1));
-    if (EqualsIgnoringCase(name, "content-type")) {
+    const std::string name = ToLowerAscii(line.substr(0, colon));
+    const std::string_view value = TrimBlanks(line.substr(colon + 1));
+    if (name == "content-type") {
       part.content_type = value;
-    } else if (EqualsIgnoringCase(name, "content-disposition")) {
-      disposed =
-          EqualsIgnoringCase(value.substr(0, value.find(';')), "form-data");
+    } else if (name == "content-disposition") {
+      disposed = ToLowerAscii(value.substr(0, value.find(';'))) == "form-data";
       part.name = FindFieldParameter(value, "name");
       part.filename = FindFieldParameter(value, "filename");
     }
@@ -80,10 +67,10 @@ std::string FindFieldParameter(std::string_view value, std::string_view name) {
     rest = rest.substr(1);
     const size_t equals = rest.find('=');
     if (equals == std::string_view::npos) break;
-    const std::string_view key = Trim(rest.substr(0, equals));
+    const std::string key = ToLowerAscii(TrimBlanks(rest.substr(0, equals)));
     rest.remove_prefix(equals + 1);
     const std::string found = TakeValue(rest);
-    if (EqualsIgnoringCase(key, name)) return found;
+    if (key == ToLowerAscii(name)) return found;
     rest.remove_prefix(std::min(rest.find(';'), rest.size()));
   }
   return "";
@@ -113,10 +100,18 @@ Result<std::vector<FormPart>> ParseMultipart(std::string_view body,
           ErrorCode::kTooLarge,
           fmt::format("A form has at most {} parts.", limits.max_form_parts)};
     }
-    const size_t head_end = body.find("\r\n\r\n");
+    const size_t head_end =
+        body.substr(0, limits.max_form_head_bytes).find("\r\n\r\n");
     const size_t end = head_end == std::string_view::npos
                            ? std::string_view::npos
                            : body.find(delimiter, head_end + 2);
+    if (head_end == std::string_view::npos &&
+        body.size() >= limits.max_form_head_bytes) {
+      return Error{
+          ErrorCode::kTooLarge,
+          fmt::format("The head of a form's part has at most {} bytes.",
+                      limits.max_form_head_bytes)};
+    }
     if (!body.starts_with("\r\n") || end == std::string_view::npos) {
       return Malformed("it ends early.");
     }

@@ -59,17 +59,17 @@ std::optional<HttpResponse> ReadBytes(size_t limit,
   const BodyEnd end = source([&](std::string_view bytes) {
     const size_t whole = request.body.size() + bytes.size();
     too_large = whole > limit;
-    too_many = held && !held->Grow(whole);
+    too_many = !held->Grow(whole);
     if (too_large || too_many) return false;
     request.body += bytes;
     return true;
   });
   if (too_large) return MakeTooLarge(limit, request.id);
   if (too_many) {
-    return MakeProblem(
-        {ErrorCode::kOverloaded, "Too many large files are being sent at once.",
-         "Send it again in a moment."},
-        request.id);
+    return MakeProblem({ErrorCode::kOverloaded,
+                        "Too many large bodies are being sent at once.",
+                        "Send it again in a moment."},
+                       request.id);
   }
   switch (end) {
     case BodyEnd::kTimedOut:
@@ -117,8 +117,7 @@ std::optional<HttpResponse> ReadRequestBody(
   const size_t limit = upload ? static_cast<size_t>(limits.max_upload_bytes)
                               : limits.max_json_bytes;
   if (head.content_length > limit) return MakeTooLarge(limit, request.id);
-  std::shared_ptr<HeldBody> held;
-  if (upload) held = std::make_shared<HeldBody>(budget);
+  const auto held = std::make_shared<HeldBody>(budget);
   request.held = held;
   if (auto refusal = ReadBytes(limit, held, source, request)) return refusal;
   const bool form = FindEssence(request) == "multipart/form-data";

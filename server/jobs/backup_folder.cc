@@ -1,6 +1,9 @@
 #include "server/jobs/backup_folder.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -14,11 +17,19 @@ namespace fs = std::filesystem;
 
 constexpr char kPrefix[] = "graspdb-";
 constexpr char kChecksum[] = ".sha256";
+constexpr char kUnfinished[] = ".new";  // Ends before it is whole.
 
 Error MakeFolderError(const std::string& path, const std::error_code& error) {
   return {ErrorCode::kStorage,
           "The folder " + path + " cannot be used: " + error.message() + ".",
           "check its permissions"};
+}
+
+Error MakeWriteError() {
+  return {
+      ErrorCode::kStorage,
+      std::string("A backup cannot be written: ") + std::strerror(errno) + ".",
+      "make room"};
 }
 
 // 2024-05-01T12:00:00.000Z as graspdb-20240501T120000.000Z.db, and back.
@@ -34,13 +45,42 @@ std::string ReadTime(const std::string& name) {
          t.substr(11, 2) + ":" + t.substr(13);
 }
 
+constexpr char kSample[] = "graspdb-20240501T120000.000Z.db";
+constexpr size_t kNameLength = sizeof(kSample) - 1;
+
 bool IsName(const std::string& name) {
-  constexpr char kSample[] = "graspdb-20240501T120000.000Z.db";
-  if (name.size() != sizeof(kSample) - 1) return false;
+  if (name.size() != kNameLength) return false;
   return std::equal(name.begin(), name.end(), kSample, [](char c, char sample) {
     const bool digit = sample >= '0' && sample <= '9';
     return digit ? c >= '0' && c <= '9' : c == sample;
   });
+}
+
+// What a server that was killed has left behind.
+void RemoveUnfinished(const std::string& folder) {
+  std::error_code error;
+  std::vector<fs::path> old;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename();
+    const std::string backup = name.substr(0, kNameLength);
+    std::error_code unknown;
+    const bool unfinished = name.find(kUnfinished) != std::string::npos ||
+                            (name == backup + kChecksum &&
+                             !fs::exists(fs::path(folder) / backup, unknown));
+    if (unfinished && IsName(backup)) old.push_back(entry->path());
+  }
+  for (const fs::path& path : old) fs::remove(path, error);
+}
+
+// A backup's name and checksum, beside it and on the disk.
+bool WriteChecksum(const std::string& file, const StoredBackup& backup) {
+  const std::string draft = file + kChecksum + kUnfinished;
+  std::ofstream out(draft);
+  out << backup.sha256 << "  " << backup.name << "\n";
+  out.close();
+  return out && SyncToDisk(draft) &&
+         std::rename(draft.c_str(), (file + kChecksum).c_str()) == 0;
 }
 
 }  // namespace
@@ -58,23 +98,41 @@ Result<StoredBackup> BackupFolder::Add(const Store& store,
                  "ask again when it is done"};
   }
   std::error_code error;
-  fs::create_directories(path_, error);
+  const bool fresh = fs::create_directories(path_, error);
   if (error) return MakeFolderError(path_, error);
+  if (fresh) SyncToDisk(fs::absolute(path_).parent_path());
+  RemoveUnfinished(path_);
   StoredBackup backup;
   backup.created_at = FormatNow();
   backup.name = MakeName(backup.created_at);
   const std::string file = fs::path(path_) / backup.name;
-  GRASPDB_TRY_VOID(store.WriteBackup(file, context));
-  GRASPDB_TRY(sha256, CalcFileSha256(file));
-  GRASPDB_TRY_VOID(
-      WriteFileBytes(file + kChecksum, sha256 + "  " + backup.name + "\n"));
+  const std::string draft = file + kUnfinished;
+  GRASPDB_TRY_VOID(store.WriteBackup(draft, context));
+  const auto sha256 = CalcFileSha256(draft);
+  backup.bytes = static_cast<int64_t>(fs::file_size(draft, error));
+  if (!sha256 || error) return MakeWriteError();
+  backup.sha256 = *sha256;
+  // A backup counts when it has both; the checksum comes first.
+  if (!WriteChecksum(file, backup) ||
+      std::rename(draft.c_str(), file.c_str()) != 0 || !SyncToDisk(path_)) {
+    return MakeWriteError();
+  }
+  GRASPDB_TRY_VOID(RemoveOldest(backup.name));
+  return backup;
+}
+
+Result<void> BackupFolder::RemoveOldest(const std::string& newest) const {
   GRASPDB_TRY(all, List());
-  for (size_t i = static_cast<size_t>(most_); i < all.size(); ++i) {
+  // By name, though the clock may have been turned back since the others.
+  std::erase_if(all,
+                [&](const StoredBackup& one) { return one.name == newest; });
+  std::error_code error;
+  for (size_t i = static_cast<size_t>(most_) - 1; i < all.size(); ++i) {
     const std::string old = fs::path(path_) / all[i].name;
     fs::remove(old + kChecksum, error);
     fs::remove(old, error);
   }
-  return all.front();
+  return {};
 }
 
 Result<std::vector<StoredBackup>> BackupFolder::List() const {

@@ -28,6 +28,9 @@ class BackupFolder {
   Result<std::vector<StoredBackup>> List() const;
 
  private:
+  /** All beyond `most`, but not the one that was just made. */
+  Result<void> RemoveOldest(const std::string& newest) const;
+
   const std::string path_;
   const int most_;
   std::mutex mutex_;

@@ -61,7 +61,10 @@ Result<void> AddCategory(Service& service, const StoredCategory& category) {
   const auto added = service.AddCategory(category);
   if (added) return {};
   if (added.error().code != ErrorCode::kConflict) return added.error();
-  const auto updated = service.UpdateCategory(category);
+  const auto updated = service.UpdateCategory(
+      category.name, [&](const StoredCategory&) -> Result<StoredCategory> {
+        return category;
+      });
   return updated ? Result<void>() : Result<void>(updated.error());
 }
 

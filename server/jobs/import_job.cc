@@ -63,7 +63,7 @@ Result<SegmentedObject> SegmentNewObject(const Store& store,
   }
   GRASPDB_TRY(category, store.FindCategory(order.category));
   if (!order.face_labels.empty()) {
-    return SegmentByLabels(category, meshes, order.face_labels);
+    return SegmentByLabels(category, meshes, order.face_labels, context);
   }
   return SegmentByExamples(store, category, category.segmentation, meshes, "",
                            kImportSeed, context);
@@ -89,14 +89,15 @@ Result<void> CheckExample(const Store& store,
 
 Result<ImportResult> StoreSegmentation(Store& store, const StoredObject& object,
                                        const SegmentedObject& segmented,
-                                       bool cascade) {
+                                       bool cascade,
+                                       const Store::PartIds& instead_of = {}) {
   if (object.role == ObjectRole::kExample) {
     GRASPDB_TRY_VOID(CheckExample(store, segmented));
   }
-  GRASPDB_TRY(stored,
-              store.ReplaceParts(object.id, segmented.category,
-                                 segmented.record, segmented.meshes,
-                                 segmented.parts, segmented.solids, cascade));
+  GRASPDB_TRY(stored, store.ReplaceParts(object.id, segmented.category,
+                                         segmented.record, segmented.meshes,
+                                         segmented.parts, segmented.solids,
+                                         cascade, instead_of));
   GRASPDB_TRY(parts, store.ListParts(stored.id));
   return ImportResult{stored, parts, false};
 }
@@ -135,6 +136,12 @@ Result<ImportOrder> Service::CheckImport(const ImportOrder& order) const {
     if (const auto format = ParseMeshFormat(order.format); !format) {
       return format.error();
     }
+  }
+  constexpr size_t kMostName = 255;  // As most file systems take.
+  if (order.file_name.size() > kMostName || order.name.size() > kMostName) {
+    return Error{ErrorCode::kInvalidArgument,
+                 fmt::format("A name has at most {} bytes.", kMostName), "",
+                 order.name.size() > kMostName ? "name" : "mesh"};
   }
   if (order.bytes.empty()) {
     const auto format = ParseMeshFormat(order.format);
@@ -230,7 +237,7 @@ Result<ImportResult> Service::Resegment(const SegmentOrder& order,
   GRASPDB_TRY(category, store_->FindCategory(name));
   if (!order.face_labels.empty()) {
     GRASPDB_TRY(segmented,
-                SegmentByLabels(category, meshes, order.face_labels));
+                SegmentByLabels(category, meshes, order.face_labels, context));
     return StoreSegmentation(*store_, object, segmented, order.cascade);
   }
   SegmentationParameters parameters = category.segmentation;
@@ -248,6 +255,7 @@ Result<ImportResult> Service::Relabel(const std::string& part_id,
                                       const std::string& label, bool cascade) {
   GRASPDB_TRY(part, store_->FindPart(part_id));
   GRASPDB_TRY(object, store_->FindObject(part.object_id));
+  GRASPDB_TRY(before, store_->ListParts(object.id));
   GRASPDB_TRY(category, store_->FindCategory(object.category));
   const std::vector<std::string> labels = MakeVocabulary(category).labels;
   const auto found = std::find(labels.begin(), labels.end(), label);
@@ -257,10 +265,9 @@ Result<ImportResult> Service::Relabel(const std::string& part_id,
         "Category '" + category.name + "' has no part '" + label + "'.",
         fmt::format("known: {}", fmt::join(labels, ", ")), "label"};
   }
-  if (label == part.label) {
-    GRASPDB_TRY(parts, store_->ListParts(object.id));
-    return ImportResult{object, parts, false};
-  }
+  if (label == part.label) return ImportResult{object, before, false};
+  std::vector<std::string> instead_of;
+  for (const StoredPart& one : before) instead_of.push_back(one.id);
   GRASPDB_TRY(meshes, store_->ReadObjectMeshes(object.id));
   const auto index = static_cast<int>(found - labels.begin());
   std::replace(meshes.canonical_labels.begin(), meshes.canonical_labels.end(),
@@ -272,7 +279,7 @@ Result<ImportResult> Service::Relabel(const std::string& part_id,
   record.verdict = ToString(SegmentationVerdict::kMatched);
   record.warnings.clear();
   GRASPDB_TRY(segmented, CutLabelledObject(category, record, meshes));
-  return StoreSegmentation(*store_, object, segmented, cascade);
+  return StoreSegmentation(*store_, object, segmented, cascade, instead_of);
 }
 
 }  // namespace graspdb

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -11,12 +12,13 @@
 namespace graspdb {
 namespace {
 
-// One grasp space to be learned.
+// What is to be learned: a part with a hand each.
 struct Lesson {
-  StoredPart part;
-  Part solid;
+  size_t part;  ///< Its place among the object's.
   std::string hand;
 };
+
+constexpr size_t kMostHands = 64;
 
 Result<std::vector<std::string>> ListHandNames(const Store& store) {
   GRASPDB_TRY(hands, store.ListHands({1000, ""}));
@@ -26,9 +28,8 @@ Result<std::vector<std::string>> ListHandNames(const Store& store) {
 }
 
 Result<std::vector<Lesson>> ListLessons(const Store& store,
-                                        const LearnOrder& order) {
-  GRASPDB_TRY(parts, store.ListParts(order.object_id));
-  GRASPDB_TRY(solids, store.ReadSolids(order.object_id));
+                                        const LearnOrder& order,
+                                        const std::vector<StoredPart>& parts) {
   GRASPDB_TRY(all_hands, ListHandNames(store));
   const auto& hands = order.hands.empty() ? all_hands : order.hands;
   std::vector<Lesson> lessons;
@@ -37,22 +38,22 @@ Result<std::vector<Lesson>> ListLessons(const Store& store,
       const auto& wanted = order.part_labels;
       if (wanted.empty() || std::find(wanted.begin(), wanted.end(),
                                       parts[i].label) != wanted.end()) {
-        lessons.push_back({parts[i], solids[i], hand});
+        lessons.push_back({i, hand});
       }
     }
   }
   return lessons;
 }
 
-StoredGraspSpace DescribeLesson(const Lesson& lesson,
+StoredGraspSpace DescribeLesson(const StoredPart& part, const std::string& hand,
                                 const StoredObject& object,
                                 const LearnOrder& order) {
   StoredGraspSpace record;
   record.object_id = object.id;
-  record.part_id = lesson.part.id;
-  record.part_label = lesson.part.label;
+  record.part_id = part.id;
+  record.part_label = part.label;
   record.category = object.category;
-  record.hand = lesson.hand;
+  record.hand = hand;
   record.parameters = ParametersToJson(SelectForLearning(order.parameters));
   record.parameters_hash = MakeContentId(record.parameters);
   record.seed = order.seed;
@@ -83,6 +84,13 @@ Result<void> Service::CheckLearn(const LearnOrder& order) const {
                  "The object has no part '" + label + "'.",
                  fmt::format("known: {}", fmt::join(labels, ", ")), "parts"};
   }
+  const std::set<std::string> different(order.hands.begin(), order.hands.end());
+  if (order.hands.size() > kMostHands ||
+      different.size() != order.hands.size()) {
+    return Error{ErrorCode::kInvalidArgument,
+                 fmt::format("hands takes at most {}, each once.", kMostHands),
+                 "", "hands"};
+  }
   for (const std::string& hand : order.hands) {
     if (const auto model = FindHandModel(hand); !model) return model.error();
   }
@@ -99,12 +107,15 @@ Result<std::vector<StoredGraspSpace>> Service::LearnObject(
   GRASPDB_TRY_VOID(CheckLearn(order));
   GRASPDB_TRY(object, store_->FindObject(order.object_id));
   GRASPDB_TRY(meshes, store_->ReadObjectMeshes(object.id));
-  GRASPDB_TRY(lessons, ListLessons(*store_, order));
+  GRASPDB_TRY(parts, store_->ListParts(object.id));
+  GRASPDB_TRY(solids, store_->ReadSolids(parts));
+  GRASPDB_TRY(lessons, ListLessons(*store_, order, parts));
   std::vector<StoredGraspSpace> spaces;
   const double count = static_cast<double>(lessons.size());
   for (size_t i = 0; i < lessons.size(); ++i) {
     const Lesson& lesson = lessons[i];
-    StoredGraspSpace record = DescribeLesson(lesson, object, order);
+    const StoredPart& part = parts[lesson.part];
+    StoredGraspSpace record = DescribeLesson(part, lesson.hand, object, order);
     GRASPDB_TRY(known,
                 store_->FindLearned(record.part_id, record.hand,
                                     record.parameters_hash, record.seed));
@@ -112,15 +123,14 @@ Result<std::vector<StoredGraspSpace>> Service::LearnObject(
       spaces.push_back(*known);
       continue;
     }
-    GRASPDB_TRY(hand, FindHandShape(lesson.hand));
+    GRASPDB_TRY(hand, FindHandShape(lesson.hand, context));
     SubContext part_context(
-        context,
-        fmt::format("learn {} with {}", lesson.part.label, lesson.hand),
+        context, fmt::format("learn {} with {}", part.label, lesson.hand),
         static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
     const auto start = ExecutionContext::Clock::now();
     LearnRequest request;
     request.hand = hand;
-    request.part_E = lesson.solid;
+    request.part_E = solids[lesson.part];
     request.whole_E = {meshes.work, meshes.work_labels};
     request.parameters = SelectForLearning(order.parameters);
     request.seed = order.seed;

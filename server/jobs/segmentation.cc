@@ -29,13 +29,17 @@ std::string NameNearest(const std::vector<SegmentedObject>& nearest) {
 }
 
 // Per face of `to`, the label of the face of `from` nearest to its centroid.
-std::vector<int> CarryLabels(const TriangleMesh& from,
-                             const std::vector<int>& labels,
-                             const TriangleMesh& to) {
+Result<std::vector<int>> CarryLabels(const TriangleMesh& from,
+                                     const std::vector<int>& labels,
+                                     const TriangleMesh& to,
+                                     const ExecutionContext& context) {
   if (from == to) return labels;
   const SurfaceIndex index(from);
   std::vector<int> carried;
   for (int f = 0; f < to.num_triangles(); ++f) {
+    if (context.Cancelled()) {
+      return Error{ErrorCode::kCancelled, "segmentation was cancelled"};
+    }
     const auto closest = index.FindClosest(to.centroid(f));
     carried.push_back(labels[static_cast<size_t>(closest->face)]);
   }
@@ -96,11 +100,10 @@ std::vector<StoredPart> DescribeParts(const StoredCategory& category,
   return parts;
 }
 
-SegmentedObject MakeSegmentedObject(const StoredCategory& category,
-                                    const ObjectMeshes& meshes,
-                                    const ExampleSet& examples,
-                                    const SegmentationParameters& parameters,
-                                    SegmentationResult result) {
+Result<SegmentedObject> MakeSegmentedObject(
+    const StoredCategory& category, const ObjectMeshes& meshes,
+    const ExampleSet& examples, const SegmentationParameters& parameters,
+    SegmentationResult result, const ExecutionContext& context) {
   SegmentedObject object;
   object.category = category.name;
   StoredSegmentation& record = object.record;
@@ -114,8 +117,9 @@ SegmentedObject MakeSegmentedObject(const StoredCategory& category,
   record.warnings = std::move(result.warnings);
   object.meshes = meshes;
   object.meshes.work_labels = std::move(result.face_labels);
-  object.meshes.canonical_labels =
-      CarryLabels(meshes.work, object.meshes.work_labels, meshes.canonical);
+  GRASPDB_TRY(labels, CarryLabels(meshes.work, object.meshes.work_labels,
+                                  meshes.canonical, context));
+  object.meshes.canonical_labels = std::move(labels);
   object.parts = DescribeParts(category, object.meshes, result.parts);
   object.solids = std::move(result.parts);
   return object;
@@ -180,15 +184,18 @@ Result<std::vector<int>> IndexLabels(const StoredCategory& category,
   return indexed;
 }
 
-Result<SegmentedObject> SegmentByLabels(
-    const StoredCategory& category, const ObjectMeshes& meshes,
-    const std::vector<std::string>& labels) {
+Result<SegmentedObject> SegmentByLabels(const StoredCategory& category,
+                                        const ObjectMeshes& meshes,
+                                        const std::vector<std::string>& labels,
+                                        const ExecutionContext& context) {
   GRASPDB_TRY_VOID(CheckFaceLabels(labels, meshes.canonical.num_triangles()));
   GRASPDB_TRY(indexed, IndexLabels(category, labels));
   ObjectMeshes labelled = meshes;
   labelled.canonical_labels = std::move(indexed);
-  labelled.work_labels =
-      CarryLabels(labelled.canonical, labelled.canonical_labels, labelled.work);
+  GRASPDB_TRY(carried,
+              CarryLabels(labelled.canonical, labelled.canonical_labels,
+                          labelled.work, context));
+  labelled.work_labels = std::move(carried);
   StoredSegmentation record;
   record.method = "labels";
   record.verdict = ToString(SegmentationVerdict::kMatched);
@@ -232,7 +239,7 @@ Result<SegmentedObject> SegmentByExamples(
                                     examples.meshes, parameters, seed, context,
                                     seen ? &*seen : nullptr));
   return MakeSegmentedObject(category, meshes, examples, parameters,
-                             std::move(result));
+                             std::move(result), context);
 }
 
 Result<SegmentedObject> SegmentByAnyCategory(const Store& store,

@@ -42,7 +42,8 @@ Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
  @retval kInvalidArgument for unknown labels or a wrong number of them. */
 Result<SegmentedObject> SegmentByLabels(const StoredCategory& category,
                                         const ObjectMeshes& meshes,
-                                        const std::vector<std::string>& labels);
+                                        const std::vector<std::string>& labels,
+                                        const ExecutionContext& context);
 
 /** Gives the object the labels that its meshes already carry.
  @param record  How it came by them. */

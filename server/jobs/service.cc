@@ -49,6 +49,23 @@ Result<void> CheckName(const std::string& name, const std::string& field) {
                "", field};
 }
 
+Result<void> CheckText(const std::string& text, size_t most,
+                       const std::string& field) {
+  if (text.size() <= most) return {};
+  return Error{ErrorCode::kInvalidArgument,
+               fmt::format("{} takes at most {} bytes.", field, most), "",
+               field};
+}
+
+Result<void> CheckNotes(const std::map<std::string, std::string>& notes,
+                        const std::string& field) {
+  for (const auto& [task, note] : notes) {
+    GRASPDB_TRY_VOID(CheckText(task, 64, field));
+    GRASPDB_TRY_VOID(CheckText(note, 1000, field));
+  }
+  return {};
+}
+
 Result<void> CheckCategory(const StoredCategory& category) {
   GRASPDB_TRY_VOID(CheckName(category.name, "name"));
   if (category.name == "auto") {
@@ -56,10 +73,12 @@ Result<void> CheckCategory(const StoredCategory& category) {
                  "auto stands for any category and cannot be a name.", "",
                  "name"};
   }
-  if (category.parts.empty() || category.parts.size() > 64) {
-    return Error{ErrorCode::kInvalidArgument, "A category has 1 to 64 parts.",
-                 "", "parts"};
+  if (category.parts.empty() || category.parts.size() > kMostParts) {
+    return Error{ErrorCode::kInvalidArgument,
+                 fmt::format("A category has 1 to {} parts.", kMostParts), "",
+                 "parts"};
   }
+  GRASPDB_TRY_VOID(CheckText(category.title, 200, "title"));
   std::set<std::string> labels;
   for (const CategoryPart& part : category.parts) {
     GRASPDB_TRY_VOID(CheckName(part.label, "label"));
@@ -68,6 +87,12 @@ Result<void> CheckCategory(const StoredCategory& category) {
                    "The label '" + part.label + "' is there twice.", "",
                    "parts"};
     }
+    GRASPDB_TRY_VOID(CheckNotes(part.tasks, "tasks"));
+    GRASPDB_TRY_VOID(CheckNotes(part.keep_free, "keep_free"));
+  }
+  const auto num_parts = static_cast<int>(category.parts.size());
+  for (const auto& [a, b] : category.adjacency) {
+    GRASPDB_EXPECTS(a >= 0 && a < num_parts && b >= 0 && b < num_parts);
   }
   Parameters parameters;
   parameters.segmentation = category.segmentation;
@@ -147,9 +172,14 @@ Result<AddedCategory> Service::AddCategory(const StoredCategory& category) {
   return store_->InsertCategory(category);
 }
 
-Result<StoredCategory> Service::UpdateCategory(const StoredCategory& category) {
-  GRASPDB_TRY_VOID(CheckCategory(category));
-  return store_->UpdateCategory(category);
+Result<StoredCategory> Service::UpdateCategory(const std::string& name,
+                                               const CategoryChange& change) {
+  return store_->UpdateCategory(
+      name, [&](const StoredCategory& category) -> Result<StoredCategory> {
+        GRASPDB_TRY(changed, change(category));
+        GRASPDB_TRY_VOID(CheckCategory(changed));
+        return std::move(changed);
+      });
 }
 
 Result<AddedHand> Service::AddHand(const HandFiles& files,
@@ -190,18 +220,24 @@ Result<AddedHand> Service::AddHand(const HandFiles& files,
 }
 
 Result<std::shared_ptr<const HandModel>> Service::FindHandModel(
-    const std::string& name) const {
+    const std::string& name, const ExecutionContext& context) const {
   if (auto known = hands_.Find(name)) return *std::move(known);
+  // Each starts a helper: one after the other, and each hand once.
+  const std::lock_guard lock(hand_mutex_);
+  if (auto known = hands_.Find(name)) return *std::move(known);
+  if (context.Cancelled()) {
+    return Error{ErrorCode::kCancelled, "Reading the hand was cancelled."};
+  }
   GRASPDB_TRY(hand, store_->FindHand(name));
-  GRASPDB_TRY(model, BuildHand(hand, *decoder_, ExecutionContext()));
+  GRASPDB_TRY(model, BuildHand(hand, *decoder_, context));
   hands_.Insert(name, model, CalcHandBytes(*model, 100));
   return std::move(model);
 }
 
 Result<std::shared_ptr<const HandShape>> Service::FindHandShape(
-    const std::string& name) const {
+    const std::string& name, const ExecutionContext& context) const {
   if (auto known = hand_shapes_.Find(name)) return *std::move(known);
-  GRASPDB_TRY(model, FindHandModel(name));
+  GRASPDB_TRY(model, FindHandModel(name, context));
   auto shape = std::make_shared<const HandShape>(model);
   hand_shapes_.Insert(name, shape, CalcHandBytes(*model, 1000));
   return std::shared_ptr<const HandShape>(std::move(shape));
@@ -235,26 +271,46 @@ Result<void> Service::CheckQuery(const GraspQuery& query) const {
   return {};
 }
 
+template <class Item>
+Result<Page<Item>> Service::Query(const GraspSearch& search,
+                                  FindPage<Item> find) const {
+  GRASPDB_TRY(query, MakeQuery(search));
+  if (!query) return Page<Item>();
+  GRASPDB_TRY(page, (*store_.*find)(*query));
+  // Whoever finds grasps has named what exists.
+  if (page.items.empty()) GRASPDB_TRY_VOID(CheckQuery(*query));
+  return std::move(page);
+}
+
 Result<Page<StoredGrasp>> Service::QueryGrasps(
     const GraspSearch& search) const {
-  GraspQuery query = search.query;
-  GRASPDB_TRY_VOID(CheckQuery(query));
-  if (search.task.empty()) return store_->QueryGrasps(query);
-  if (!query.part_labels.empty()) {
+  return Query<StoredGrasp>(search, &Store::QueryGrasps);
+}
+
+Result<Page<GraspKey>> Service::QueryGraspKeys(
+    const GraspSearch& search) const {
+  return Query<GraspKey>(search, &Store::QueryGraspKeys);
+}
+
+Result<std::optional<GraspQuery>> Service::MakeQuery(
+    const GraspSearch& search) const {
+  std::optional<GraspQuery> query = search.query;
+  if (search.task.empty()) return query;
+  if (!query->part_labels.empty()) {
     return Error{ErrorCode::kInvalidArgument, "Give parts or a task, not both.",
                  "", "task"};
   }
-  if (query.category.empty()) {
+  if (query->category.empty()) {
     return Error{ErrorCode::kInvalidArgument,
                  "What serves a task depends on the category.",
                  "name the category too", "category"};
   }
-  GRASPDB_TRY(category, store_->FindCategory(query.category));
-  query.part_labels = FindPartsForTask(category, search.task);
-  if (query.part_labels.empty()) return Page<StoredGrasp>();
-  query.keep_free = FindPartsKeptFree(category, search.task);
-  query.min_clearance = TransferLimits().min_clearance;
-  return store_->QueryGrasps(query);
+  GRASPDB_TRY(category, store_->FindCategory(query->category));
+  query->part_labels = FindPartsForTask(category, search.task);
+  if (query->part_labels.empty()) return std::optional<GraspQuery>();
+  query->keep_free = FindPartsKeptFree(category, search.task);
+  query->min_clearance = TransferLimits().min_clearance;
+  return query;
 }
 
 Result<std::shared_ptr<void>> Service::HoldKey(const std::string& key) {

@@ -111,19 +111,22 @@ class Service {
    changes nothing.
    @retval kConflict when another has its name. */
   Result<AddedCategory> AddCategory(const StoredCategory& category);
-  Result<StoredCategory> UpdateCategory(const StoredCategory& category);
+  /** See Store::UpdateCategory(). */
+  Result<StoredCategory> UpdateCategory(const std::string& name,
+                                        const CategoryChange& change);
   /** Decodes a hand's meshes and its URDF, checks that they make a hand, and
    stores it; the same files a second time change nothing.
    @retval kConflict when another hand has its name.
    @retval kInvalidArgument, kUnusableInput, kTooLarge naming what is wrong. */
   Result<AddedHand> AddHand(const HandFiles& files,
                             const ExecutionContext& context);
-  /** The built hand, shared by all callers. */
+  /** The built hand, shared by all callers.
+   @retval kCancelled soon after the context is. */
   Result<std::shared_ptr<const HandModel>> FindHandModel(
-      const std::string& name) const;
+      const std::string& name, const ExecutionContext& context = {}) const;
   /** The same with its links' search structures, shared, too. */
   Result<std::shared_ptr<const HandShape>> FindHandShape(
-      const std::string& name) const;
+      const std::string& name, const ExecutionContext& context = {}) const;
 
   /** Decodes, segments and stores a mesh. Idempotent in (bytes, units, role,
    category). An object of no category is stored without parts. An example
@@ -162,6 +165,8 @@ class Service {
                                           std::optional<int> count) const;
 
   Result<Page<StoredGrasp>> QueryGrasps(const GraspSearch& search) const;
+  /** The same without reading the grasps. */
+  Result<Page<GraspKey>> QueryGraspKeys(const GraspSearch& search) const;
 
   /** Lets a simulator judge stored grasps, best first, and keeps its verdicts,
    object by object. */
@@ -231,6 +236,13 @@ class Service {
   Result<ImportOrder> CheckImport(const ImportOrder& order) const;
   Result<TransferOrder> CheckTransfer(const TransferOrder& order) const;
   Result<void> CheckLearn(const LearnOrder& order) const;
+  // None when no part serves the task.
+  Result<std::optional<GraspQuery>> MakeQuery(const GraspSearch& search) const;
+  template <class Item>
+  using FindPage = Result<Page<Item>> (Store::*)(const GraspQuery&) const;
+  template <class Item>
+  Result<Page<Item>> Query(const GraspSearch& search,
+                           FindPage<Item> find) const;
   Result<void> CheckQuery(const GraspQuery& query) const;
   Result<StoredJob> Submit(JobKind kind, bool slow, const std::string& request,
                            const std::string& payload, const JobTerms& terms);
@@ -246,6 +258,7 @@ class Service {
   std::unique_ptr<Decoder> decoder_;
   BackupFolder backups_;
   ServiceOptions options_;
+  mutable std::mutex hand_mutex_;  // Held while a hand is built.
   // A hand never changes.
   mutable LruCache<std::shared_ptr<const HandModel>> hands_{kMostHandBytes};
   mutable LruCache<std::shared_ptr<const HandShape>> hand_shapes_{

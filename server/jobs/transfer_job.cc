@@ -65,8 +65,8 @@ Result<TransferRequest> MakeRequest(const Store& store,
   TransferRequest request;
   request.hand = std::move(hand);
   GRASPDB_TRY(novel, store.ReadObjectMeshes(plan.novel.id));
-  GRASPDB_TRY(example_parts, store.ReadSolids(plan.alignment.example_id));
-  GRASPDB_TRY(novel_parts, store.ReadSolids(plan.novel.id));
+  GRASPDB_TRY(example_parts, store.ReadSolids(plan.example_parts));
+  GRASPDB_TRY(novel_parts, store.ReadSolids(plan.novel_parts));
   request.whole_E = std::move(whole_E);
   // The parts are of the working mesh, what is checked last is the object.
   request.novel = {std::move(novel.canonical),
@@ -355,7 +355,7 @@ Result<TransferAnswer> Service::FindOrMakeTransfer(
   }
   row.seconds.emplace_back("import", CalcSecondsSince(start));
 
-  GRASPDB_TRY(hand, FindHandShape(order.hand));
+  GRASPDB_TRY(hand, FindHandShape(order.hand, context));
   GRASPDB_TRY(whole_E, FindWholeSolid(plan.alignment.example_id));
   GRASPDB_TRY(request, MakeRequest(*store_, checked, plan, hand, whole_E,
                                    options_.threads));

@@ -10,16 +10,22 @@
 namespace graspdb {
 namespace {
 
+Error MakeCancelled() {
+  return {ErrorCode::kCancelled, "The verification was cancelled."};
+}
+
 // Grasps of one object by one hand: one scene.
 using Group = std::vector<VerifiedGrasp>;
 
 Result<std::vector<Group>> CollectGroups(const Store& store,
-                                         const VerifyOrder& order, bool keep) {
+                                         const VerifyOrder& order, bool keep,
+                                         const ExecutionContext& context) {
   std::map<std::pair<std::string, std::string>, Group> groups;
   int count = 0;
   GraspQuery query = order.query;
   query.page = {1000, ""};
   do {
+    if (context.Cancelled()) return MakeCancelled();
     GRASPDB_TRY(page, store.QueryGrasps(query));
     for (StoredGrasp& grasp : page.items) {
       if (grasp.physical && keep && !order.again) continue;
@@ -41,7 +47,7 @@ Result<std::vector<Group>> CollectGroups(const Store& store,
 Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
     const VerifyOrder& order, ExecutionContext& context,
     const VerifyOptions& options) {
-  GRASPDB_TRY(groups, CollectGroups(*store_, order, options.keep));
+  GRASPDB_TRY(groups, CollectGroups(*store_, order, options.keep, context));
   size_t total = 0;
   for (const Group& group : groups) total += group.size();
   std::atomic<size_t> done{0};
@@ -50,7 +56,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
   for (Group& group : groups) {
     const StoredGrasp& first = group.front().grasp;
     GRASPDB_TRY(meshes, store_->ReadObjectMeshes(first.object_id));
-    GRASPDB_TRY(hand, FindHandModel(first.hand));
+    GRASPDB_TRY(hand, FindHandModel(first.hand, context));
     // A simulator each, since one judges one grasp at a time.
     RunInArena(options_.threads, [&] {
       const int workers =
@@ -69,9 +75,7 @@ Result<std::vector<VerifiedGrasp>> Service::VerifyGrasps(
         }
       });
     });
-    if (context.Cancelled()) {
-      return Error{ErrorCode::kCancelled, "The verification was cancelled."};
-    }
+    if (context.Cancelled()) return MakeCancelled();
     std::vector<std::pair<std::string, double>> scores;
     for (VerifiedGrasp& one : group) {
       one.grasp.physical = one.verdict.CalcScore();

@@ -45,9 +45,10 @@ Result<HttpResponse> GetCategory(const Service& service,
 Result<HttpResponse> PatchOneCategory(Service& service,
                                       const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
-  GRASPDB_TRY(category, service.store().FindCategory(Name(request)));
-  GRASPDB_TRY(changed, PatchCategory(category, request.body));
-  GRASPDB_TRY(stored, service.UpdateCategory(changed));
+  GRASPDB_TRY(stored, service.UpdateCategory(
+                          Name(request), [&](const StoredCategory& category) {
+                            return PatchCategory(category, request.body);
+                          }));
   return MakeJsonResponse(200, ToJson(stored));
 }
 
@@ -78,10 +79,8 @@ Result<HttpResponse> PostExample(Service& service, const RouteOptions& options,
   order.name = name.value_or("");
   order.seed = seed;
   order.learn = learn.value_or(true);
-  if (const auto labels = FindFile(request, "labels")) {
-    GRASPDB_TRY(face_labels, FaceLabelsFromJson(*labels));
-    order.face_labels = face_labels;
-  }
+  GRASPDB_TRY(face_labels, ReadLabels(request, *options.work_slots));
+  order.face_labels = std::move(face_labels);
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));
   GRASPDB_TRY(job, service.SubmitImport(order, {idempotency.key(), deadline}));
   order = {};

@@ -3,18 +3,20 @@
 #include <memory>
 #include <string>
 
+#include "server/jobs/service.h"
 #include "server/lru_cache.h"
-#include "server/records.h"
 
 namespace graspdb {
 
-/** Stored grasps as JSON, remembered: writing them takes longer than finding
- them. A stored grasp changes in nothing but what a simulator found. */
+/** Stored grasps as JSON, remembered: reading and writing them takes longer
+ than finding them. A stored grasp changes in nothing but what a simulator
+ found. */
 class GraspTexts {
  public:
-  /** ToJson() of the grasp. */
-  std::shared_ptr<const std::string> Get(const StoredGrasp& grasp,
-                                         const HandModel& hand);
+  /** ToJson() of the grasp.
+   @retval kNotFound when it is gone. */
+  Result<std::shared_ptr<const std::string>> Get(const GraspKey& key,
+                                                 const Service& service);
 
   CacheCounts counts() const { return cache_.counts(); }
 

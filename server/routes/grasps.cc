@@ -120,19 +120,34 @@ Result<GraspSearch> ReadSearch(QueryReader& query) {
 Result<void> CheckNames(const Store& store, const GraspSearch& search) {
   const GraspQuery& wanted = search.query;
   GRASPDB_TRY_VOID(CheckPartLabels(store, wanted.category, wanted.part_labels));
-  if (wanted.category.empty()) return {};
+  if (wanted.category.empty() || search.task.empty()) return {};
   GRASPDB_TRY(category, store.FindCategory(wanted.category));
   std::set<std::string> tasks;
   for (const CategoryPart& part : category.parts) {
     for (const auto& [task, note] : part.tasks) tasks.insert(task);
   }
-  if (!search.task.empty() && !tasks.contains(search.task)) {
+  if (!tasks.contains(search.task)) {
     return Error{ErrorCode::kNotFound,
                  fmt::format("The category {} has no task {}.", category.name,
                              search.task),
                  fmt::format("Known are {}.", fmt::join(tasks, ", ")), "task"};
   }
   return {};
+}
+
+Result<HttpResponse> ListAsJson(const Service& service, GraspTexts& texts,
+                                const GraspSearch& search) {
+  GRASPDB_TRY(page, service.QueryGraspKeys(search));
+  std::vector<std::string> items;
+  for (const GraspKey& key : page.items) {
+    const auto text = texts.Get(key, service);
+    if (text) {
+      items.push_back(**text);
+    } else if (text.error().code != ErrorCode::kNotFound) {  // Deleted since.
+      return text.error();
+    }
+  }
+  return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
 }
 
 Result<HttpResponse> ListGrasps(const Service& service, GraspTexts& texts,
@@ -142,15 +157,11 @@ Result<HttpResponse> ListGrasps(const Service& service, GraspTexts& texts,
   const GraspFormat format = ReadFormat(query);
   GRASPDB_TRY_VOID(query.Finish());
   GRASPDB_TRY_VOID(CheckNames(service.store(), search));
+  if (format == GraspFormat::kJson) {
+    return ListAsJson(service, texts, search);
+  }
   GRASPDB_TRY(page, service.QueryGrasps(search));
   GRASPDB_TRY(pairs, PairWithHands(service, page.items));
-  if (format == GraspFormat::kJson) {
-    std::vector<std::string> items;
-    for (const auto& [grasp, hand] : pairs) {
-      items.push_back(*texts.Get(*grasp, *hand));
-    }
-    return MakeJsonResponse(200, ListToJson(items, page.next_cursor));
-  }
   GRASPDB_TRY(response, MakeGraspsResponse(service, pairs, format));
   if (!page.next_cursor.empty()) {
     response.headers.emplace_back("X-Next-Cursor", page.next_cursor);

@@ -14,9 +14,10 @@ namespace {
 constexpr char kFormHint[] =
     "curl -F hand=@hand.json -F urdf=@hand.urdf -F mesh=@palm.stl …";
 
-Result<std::string> DescribeHand(const Service& service,
-                                 const StoredHand& hand) {
-  GRASPDB_TRY(model, service.FindHandModel(hand.name));
+Result<std::string> DescribeHand(const Service& service, const StoredHand& hand,
+                                 const HttpRequest& request) {
+  RequestContext context(request);
+  GRASPDB_TRY(model, service.FindHandModel(hand.name, context.context()));
   return ToJson(hand, *model);
 }
 
@@ -27,7 +28,7 @@ Result<HttpResponse> ListHands(const Service& service,
   GRASPDB_TRY_VOID(query.Finish());
   GRASPDB_TRY(found, service.store().ListHands(page));
   return MakeListResponse(found, [&](const StoredHand& hand) {
-    return DescribeHand(service, hand);
+    return DescribeHand(service, hand, request);
   });
 }
 
@@ -36,7 +37,7 @@ Result<HttpResponse> GetHand(const Service& service,
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(hand,
               service.store().FindHand(request.path_parameters.at("name")));
-  GRASPDB_TRY(json, DescribeHand(service, hand));
+  GRASPDB_TRY(json, DescribeHand(service, hand, request));
   return MakeJsonResponse(200, json);
 }
 
@@ -114,7 +115,7 @@ Result<HttpResponse> PostHand(Service& service, WorkSlots& slots,
     if (!slot) return slot.error();
     RequestContext context(request);
     GRASPDB_TRY(added, service.AddHand(files, context.context()));
-    GRASPDB_TRY(json, DescribeHand(service, added.hand));
+    GRASPDB_TRY(json, DescribeHand(service, added.hand, request));
     HttpResponse response = MakeJsonResponse(added.created ? 201 : 200, json);
     response.headers.emplace_back("Location", "/v1/hands/" + added.hand.name);
     return response;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "engine/admission/mesh_reader.h"
-#include "server/codec/input_json.h"
 #include "server/codec/mesh_writer.h"
 #include "server/codec/order_json.h"
 #include "server/codec/record_json.h"
@@ -53,10 +52,8 @@ Result<HttpResponse> PostObject(Service& service, WorkSlots& slots,
   order.name = name.value_or("");
   order.seed = seed;
   order.learn = false;
-  if (const auto labels = FindFile(request, "labels")) {
-    GRASPDB_TRY(face_labels, FaceLabelsFromJson(*labels));
-    order.face_labels = face_labels;
-  }
+  GRASPDB_TRY(face_labels, ReadLabels(request, slots));
+  order.face_labels = std::move(face_labels);
   return AnswerOnce(request, service, [&]() -> Result<HttpResponse> {
     RequestContext context(request);
     const auto slot = slots.Take(request.stop);
@@ -119,11 +116,13 @@ Result<HttpResponse> DeleteObject(Service& service,
 Result<TriangleMesh> FindPartMesh(const Store& store, const std::string& object,
                                   const std::string& part) {
   GRASPDB_TRY(parts, store.ListParts(object));
-  GRASPDB_TRY(solids, store.ReadSolids(object));
   std::string known;
-  for (size_t i = 0; i < parts.size() && i < solids.size(); ++i) {
-    if (parts[i].label == part || parts[i].id == part) return solids[i].solid_O;
-    known += (known.empty() ? "" : ", ") + parts[i].label;
+  for (const StoredPart& one : parts) {
+    if (one.label == part || one.id == part) {
+      GRASPDB_TRY(solids, store.ReadSolids({one}));
+      return std::move(solids.front().solid_O);
+    }
+    known += (known.empty() ? "" : ", ") + one.label;
   }
   return Error{ErrorCode::kNotFound,
                fmt::format("The object has no part {}.", part),
@@ -184,7 +183,10 @@ Result<HttpResponse> PostSegmentation(Service& service,
   const auto deadline = ReadDeadline(query);
   GRASPDB_TRY_VOID(query.Finish());
   GRASPDB_TRY_VOID(service.store().FindObject(Id(request)));
+  auto slot = TakeToParse(request.body.size(), *options.work_slots, request);
+  if (!slot) return slot.error();
   GRASPDB_TRY(order, SegmentOrderFromJson(BodyOrEmptyObject(request)));
+  slot->reset();
   order.object_id = Id(request);
   order.cascade = cascade;
   GRASPDB_TRY(idempotency, Idempotency::Read(request, service));

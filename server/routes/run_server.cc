@@ -1,6 +1,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -107,6 +108,15 @@ JobObserver ObserveJobs(const std::shared_ptr<JobMetrics>& metrics) {
   return observer;
 }
 
+/** Each connection is a file, and so are a job's pipes: the usual soft limit of
+ 1024 is for programs that call select(). */
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int Fail(const Error& error) {
   LogLine("graspdb: " + error.message + " " + error.hint);
   return 2;
@@ -132,14 +142,17 @@ int RunServer(Service& service, const ServerConfig& config) {
   routes.metrics = options.metrics;
   routes.jobs = std::make_shared<JobMetrics>();
   routes.default_wait = config.default_wait;
+  // Half, three eighths and less than an eighth of the threads: from eight on
+  // one at least is left for who asks for little.
   const auto threads = static_cast<int>(config.http_threads);
   routes.held_threads =
       std::make_shared<WorkSlots>(std::max(1, threads / 2), 0);
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-  routes.work_slots =
-      std::make_shared<WorkSlots>(std::max(1, cores), threads / 4);
+  routes.work_slots = std::make_shared<WorkSlots>(
+      std::max(1, std::min(cores, threads / 8)), (threads - 1) / 4);
   routes.picture_slots =
-      std::make_shared<WorkSlots>(1, std::max(1, threads / 4));
+      std::make_shared<WorkSlots>(1, std::max(0, threads / 8 - 2));
+  RaiseFileLimit();
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());

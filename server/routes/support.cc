@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/admission/mesh_reader.h"
+#include "server/codec/input_json.h"
 #include "server/http/multipart.h"
 #include "server/ids.h"
 
@@ -44,6 +45,15 @@ std::string CalcRequestSha256(const HttpRequest& request) {
                CalcSha256(file.content);
   }
   return CalcSha256(content);
+}
+
+// The content of the form's file of that name, or nothing.
+std::optional<std::string> FindFile(const HttpRequest& request,
+                                    const std::string& name) {
+  for (const FormPart& file : request.files) {
+    if (file.name == name) return file.content;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -111,14 +121,6 @@ std::vector<std::string> ReadList(QueryReader& query, const std::string& name) {
   return list;
 }
 
-std::optional<std::string> FindFile(const HttpRequest& request,
-                                    const std::string& name) {
-  for (const FormPart& file : request.files) {
-    if (file.name == name) return file.content;
-  }
-  return std::nullopt;
-}
-
 Result<std::optional<ImportOrder>> ReadUpload(
     const HttpRequest& request, QueryReader& query,
     const std::vector<std::string>& others) {
@@ -153,6 +155,22 @@ Result<std::optional<ImportOrder>> ReadUpload(
   if (!found) return std::optional<ImportOrder>();
   if (order.format.empty() && ParseMeshFormat(type)) order.format = type;
   return std::optional<ImportOrder>(std::move(order));
+}
+
+Result<std::shared_ptr<void>> TakeToParse(size_t bytes, WorkSlots& slots,
+                                          const HttpRequest& request) {
+  constexpr size_t kFew = 64 << 10;
+  if (bytes <= kFew) return std::shared_ptr<void>();
+  return slots.Take(request.stop);
+}
+
+Result<std::vector<std::string>> ReadLabels(const HttpRequest& request,
+                                            WorkSlots& slots) {
+  const auto file = FindFile(request, "labels");
+  if (!file) return std::vector<std::string>();
+  const auto slot = TakeToParse(file->size(), slots, request);
+  if (!slot) return slot.error();
+  return FaceLabelsFromJson(*file);
 }
 
 std::chrono::seconds ReadPreferredWait(const HttpRequest& request,

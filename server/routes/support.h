@@ -31,6 +31,17 @@ Error MakeMissingMesh();
 /** The JSON body, {} when there is none. */
 std::string BodyOrEmptyObject(const HttpRequest& request);
 
+/** The form's file "labels", or nothing: see FaceLabelsFromJson(). A large one
+ waits for a slot, since its JSON takes much memory.
+ @retval kOverloaded as WorkSlots::Take(). */
+Result<std::vector<std::string>> ReadLabels(const HttpRequest& request,
+                                            WorkSlots& slots);
+
+/** A slot to read so many bytes of JSON with; null where they are few.
+ @retval kOverloaded as WorkSlots::Take(). */
+Result<std::shared_ptr<void>> TakeToParse(size_t bytes, WorkSlots& slots,
+                                          const HttpRequest& request);
+
 /** The object with its parts. */
 Result<HttpResponse> DescribeObject(const Service& service, int status,
                                     const std::string& id);
@@ -66,10 +77,6 @@ Result<HttpResponse> MakeListResponse(const Page<T>& page, Encode&& encode) {
 Result<std::optional<ImportOrder>> ReadUpload(
     const HttpRequest& request, QueryReader& query,
     const std::vector<std::string>& others = {});
-
-/** The content of the form's file of that name, or nothing. */
-std::optional<std::string> FindFile(const HttpRequest& request,
-                                    const std::string& name);
 
 /** How long a client wants to wait for a job: RFC 7240's Prefer, wait=N (at
  most 600 s) and respond-async; unknown preferences are ignored. */

@@ -1,24 +1,14 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "server/files.h"
 #include "server/store/store.h"
 #include "server/store/store_impl.h"
 
 namespace graspdb {
 namespace {
-
-// What was written to a file or folder is on the disk.
-bool Sync(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool synced = fsync(file) == 0;
-  return close(file) == 0 && synced;
-}
 
 Error MakeWriteError(const std::string& path) {
   return {ErrorCode::kStorage,
@@ -52,11 +42,14 @@ Result<void> Store::WriteBackup(const std::string& path,
     std::filesystem::remove(partial, error);
     return Error{ErrorCode::kCancelled, "The backup was cancelled."};
   }
-  if (!Sync(partial) || std::rename(partial.c_str(), path.c_str()) != 0 ||
-      !Sync(folder.empty() ? "." : folder)) {
-    return MakeWriteError(path);
+  if (SyncToDisk(partial) && std::rename(partial.c_str(), path.c_str()) == 0 &&
+      SyncToDisk(folder.empty() ? "." : folder)) {
+    return {};
   }
-  return {};
+  const Error failure = MakeWriteError(path);
+  std::filesystem::remove(partial, error);
+  std::filesystem::remove(path, error);
+  return failure;
 }
 
 }  // namespace graspdb

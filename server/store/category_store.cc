@@ -72,8 +72,14 @@ void ReadCategoryLists(Database& database, StoredCategory& category) {
       "SELECT a, b FROM category_adjacency WHERE category = ?"
       " ORDER BY position");
   pairs.Bind(category.name);
+  const auto is_part = [&](int64_t index) {
+    return index >= 0 && index < std::ssize(category.parts);
+  };
   while (pairs.Step()) {
-    category.adjacency.emplace_back(pairs.Int(0), pairs.Int(1));
+    const int64_t a = pairs.Int(0);
+    const int64_t b = pairs.Int(1);
+    // Older programs kept pairs of parts that were gone.
+    if (is_part(a) && is_part(b)) category.adjacency.emplace_back(a, b);
   }
   std::map<std::string, double> values;
   Statement settings = database.Prepare(
@@ -159,9 +165,12 @@ Result<AddedCategory> Store::InsertCategory(const StoredCategory& category) {
   });
 }
 
-Result<StoredCategory> Store::UpdateCategory(const StoredCategory& category) {
+Result<StoredCategory> Store::UpdateCategory(const std::string& name,
+                                             const CategoryChange& change) {
   return impl_->Write([&](Database& database) {
-    const StoredCategory old = ReadCategory(database, category.name);
+    const StoredCategory old = ReadCategory(database, name);
+    const StoredCategory category = Unwrap(change(old));
+    GRASPDB_EXPECTS(category.name == name);
     const bool same_labels =
         MakeVocabulary(old).labels == MakeVocabulary(category).labels;
     if (!same_labels &&

@@ -16,16 +16,16 @@ using store::Filter;
 using store::Throw;
 using store::Unwrap;
 
-constexpr char kGraspColumns[] =
+constexpr char kGraspById[] =
     "SELECT g.seq, g.id, g.stage, g.position, g.object_id, g.part_id,"
     " g.part_label, g.category, g.hand, g.grasp_space_id, g.transfer_id,"
     " g.source_grasp_id, g.epsilon, g.volume, g.hybrid, g.robust, g.physical,"
     " g.example_epsilon, g.open_close_epsilon, g.penetration, g.data,"
     " ifnull(t.engine_version, s.engine_version),"
     " ifnull(t.parameters_hash, s.parameters_hash), ifnull(t.seed, s.seed),"
-    " g.grip, g.merit"
+    " g.grip"
     " FROM grasps g CROSS JOIN grasp_spaces s ON s.id = g.grasp_space_id"
-    " LEFT JOIN transfers t ON t.id = g.transfer_id ";
+    " LEFT JOIN transfers t ON t.id = g.transfer_id WHERE g.id = ?";
 
 StoredGrasp MakeGrasp(Database& database, const Statement& row) {
   StoredGrasp grasp;
@@ -58,6 +58,15 @@ StoredGrasp MakeGrasp(Database& database, const Statement& row) {
   gaps.Bind(grasp.id);
   while (gaps.Step()) grasp.clearances[gaps.Text(0)] = gaps.Double(1);
   return grasp;
+}
+
+StoredGrasp ReadGrasp(Database& database, const std::string& id) {
+  Statement row = database.Prepare(kGraspById);
+  if (!row.Bind(id).Step()) {
+    Throw(ErrorCode::kNotFound, "There is no grasp '" + id + "'.",
+          "GET /v1/grasps lists them", "id");
+  }
+  return MakeGrasp(database, row);
 }
 
 // How a list is sorted: by `key` in `direction`, then by seq likewise.
@@ -134,6 +143,38 @@ Filter MakeGraspFilter(const GraspQuery& query) {
   return filter;
 }
 
+Page<GraspKey> ReadKeys(Database& database, const GraspQuery& query) {
+  CheckPage(query.page);
+  const SortRule rule = FindSortRule(query.sort);
+  Filter where = MakeGraspFilter(query);
+  if (!query.page.cursor.empty()) {
+    const Place place = ParsePlace(rule, query.page.cursor);
+    where.AddValues(fmt::format("({}, g.seq) {} (?, ?)", rule.key,
+                                rule.descending ? '<' : '>'),
+                    place.key, place.seq);
+  }
+  // The inner query needs nothing but an index.
+  const std::string order = fmt::format(" ORDER BY {0}{1}, g.seq{1}", rule.key,
+                                        rule.descending ? " DESC" : " ASC");
+  Statement rows = database.Prepare(fmt::format(
+      "SELECT g.id, g.object_id, g.physical, {}, g.seq FROM grasps g WHERE"
+      " g.seq IN (SELECT g.seq FROM grasps g {}{} LIMIT ?){}",
+      rule.key, where.sql(), order, order));
+  where.Bind(rows);
+  rows.Bind(query.page.limit + 1);
+  Page<GraspKey> page;
+  Place last;
+  while (rows.Step()) {
+    if (std::ssize(page.items) == query.page.limit) {
+      page.next_cursor = FormatPlace(rule, last);
+      break;
+    }
+    page.items.push_back({rows.Text(0), rows.Text(1), rows.OptionalDouble(2)});
+    last = {rows.Double(3), rows.Int(4)};
+  }
+  return page;
+}
+
 }  // namespace
 
 void store::InsertGrasp(Database& database, const StoredGrasp& grasp) {
@@ -164,15 +205,8 @@ void store::InsertGrasp(Database& database, const StoredGrasp& grasp) {
 }
 
 Result<StoredGrasp> Store::FindGrasp(const std::string& id) const {
-  return impl_->Read([&](Database& database) {
-    Statement row =
-        database.Prepare(std::string(kGraspColumns) + "WHERE g.id = ?");
-    if (!row.Bind(id).Step()) {
-      Throw(ErrorCode::kNotFound, "There is no grasp '" + id + "'.",
-            "GET /v1/grasps lists them", "id");
-    }
-    return MakeGrasp(database, row);
-  });
+  return impl_->Read(
+      [&](Database& database) { return ReadGrasp(database, id); });
 }
 
 Result<void> Store::SetPhysical(
@@ -186,41 +220,18 @@ Result<void> Store::SetPhysical(
   });
 }
 
+Result<Page<GraspKey>> Store::QueryGraspKeys(const GraspQuery& query) const {
+  return impl_->Read(
+      [&](Database& database) { return ReadKeys(database, query); });
+}
+
 Result<Page<StoredGrasp>> Store::QueryGrasps(const GraspQuery& query) const {
   return impl_->Read([&](Database& database) {
-    CheckPage(query.page);
-    const SortRule rule = FindSortRule(query.sort);
-    const std::string direction = rule.descending ? " DESC" : " ASC";
-    Filter where = MakeGraspFilter(query);
-    if (!query.page.cursor.empty()) {
-      const Place place = ParsePlace(rule, query.page.cursor);
-      where.AddValues(fmt::format("({}, g.seq) {} (?, ?)", rule.key,
-                                  rule.descending ? '<' : '>'),
-                      place.key, place.seq);
-    }
-    const std::string order =
-        fmt::format(" ORDER BY {0}{1}, g.seq{1}", rule.key, direction);
-    // The inner query needs nothing but an index.
-    Statement rows = database.Prepare(fmt::format(
-        "{}WHERE g.seq IN (SELECT g.seq FROM grasps g {}{} LIMIT ?){}",
-        kGraspColumns, where.sql(), order, order));
-    where.Bind(rows);
-    rows.Bind(query.page.limit + 1);
+    const Page<GraspKey> keys = ReadKeys(database, query);
     Page<StoredGrasp> page;
-    Place last;
-    while (rows.Step()) {
-      if (std::ssize(page.items) == query.page.limit) {
-        page.next_cursor = FormatPlace(rule, last);
-        break;
-      }
-      page.items.push_back(MakeGrasp(database, rows));
-      const StoredGrasp& grasp = page.items.back();
-      const int64_t seq = rows.Int(0);
-      const double keys[] = {grasp.grasp.quality.epsilon,
-                             grasp.grasp.quality.hybrid,
-                             grasp.robust.value_or(-1.0),
-                             static_cast<double>(seq), rows.Double(25)};
-      last = {keys[static_cast<int>(query.sort)], seq};
+    page.next_cursor = keys.next_cursor;
+    for (const GraspKey& key : keys.items) {
+      page.items.push_back(ReadGrasp(database, key.id));
     }
     return page;
   });

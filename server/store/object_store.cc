@@ -240,6 +240,18 @@ std::string DescribeDependents(Database& database, const std::string& id) {
          std::to_string(counts[1]) + " transfers depend on it (" + ids + ")";
 }
 
+void RefuseOtherParts(Database& database, const std::string& object_id,
+                      const std::vector<std::string>& expected) {
+  std::vector<std::string> ids;
+  for (const StoredPart& part : ReadParts(database, object_id)) {
+    ids.push_back(part.id);
+  }
+  if (ids == expected) return;
+  Throw(ErrorCode::kConflict,
+        "Object " + object_id + " has been cut anew meanwhile.",
+        "send the request again");
+}
+
 void RefuseDependents(Database& database, const std::string& id, bool cascade,
                       const std::string& what) {
   const std::string dependents = DescribeDependents(database, id);
@@ -330,7 +342,7 @@ Result<StoredObject> Store::InsertObject(const NewObject& object,
     }
     WriteNotes(database, record.id, "repair", record.repairs);
     WriteSegmentation(database, record.id, record.segmentation);
-    InsertParts(database, record, object.parts, object.solids);
+    InsertParts(database, record, object.meshes, object.parts, object.solids);
     return ReadObject(database, record.id);
   });
 }
@@ -389,15 +401,14 @@ Result<ObjectMeshes> Store::ReadObjectMeshes(const std::string& id) const {
       [&](Database& database) { return ReadMeshes(database, id); });
 }
 
-Result<StoredObject> Store::ReplaceParts(const std::string& object_id,
-                                         const std::string& category,
-                                         const StoredSegmentation& segmentation,
-                                         const ObjectMeshes& labelled,
-                                         const std::vector<StoredPart>& parts,
-                                         const std::vector<Part>& solids,
-                                         bool cascade) {
+Result<StoredObject> Store::ReplaceParts(
+    const std::string& object_id, const std::string& category,
+    const StoredSegmentation& segmentation, const ObjectMeshes& labelled,
+    const std::vector<StoredPart>& parts, const std::vector<Part>& solids,
+    bool cascade, const PartIds& instead_of) {
   return impl_->Write([&](Database& database) {
     StoredObject object = ReadObject(database, object_id);
+    if (instead_of) RefuseOtherParts(database, object_id, *instead_of);
     RefuseDependents(database, object_id, cascade, "cut anew");
     if (category != object.category &&
         FindByContent(database, object.sha256, object.units, object.role,
@@ -428,7 +439,7 @@ Result<StoredObject> Store::ReplaceParts(const std::string& object_id,
     BindLabels(update, same ? std::vector<int>() : labelled.work_labels);
     update.Run();
     WriteSegmentation(database, object_id, segmentation);
-    InsertParts(database, object, parts, solids);
+    InsertParts(database, object, labelled, parts, solids);
     return ReadObject(database, object_id);
   });
 }

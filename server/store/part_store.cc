@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "server/ids.h"
 #include "server/store/blob_codec.h"
 #include "server/store/store.h"
@@ -38,6 +40,35 @@ void ReadAdjacency(Database& database, StoredPart& part) {
   while (rows.Step()) part.adjacent.push_back(rows.Text(0));
 }
 
+// Labels are places among the category's parts, which may have been changed
+// while the object was segmented.
+void CheckLabels(Database& database, const std::string& category,
+                 const ObjectMeshes& labelled,
+                 const std::vector<StoredPart>& parts) {
+  std::vector<std::string> labels;
+  Statement rows = database.Prepare(
+      "SELECT label FROM category_parts WHERE category = ?"
+      " ORDER BY label_index");
+  rows.Bind(category);
+  while (rows.Step()) labels.push_back(rows.Text(0));
+  const auto is_known = [&](int index) {
+    return index >= 0 && index < std::ssize(labels);
+  };
+  const bool sound =
+      std::all_of(labelled.canonical_labels.begin(),
+                  labelled.canonical_labels.end(), is_known) &&
+      std::all_of(labelled.work_labels.begin(), labelled.work_labels.end(),
+                  is_known) &&
+      std::all_of(parts.begin(), parts.end(), [&](const StoredPart& part) {
+        return is_known(part.label_index) &&
+               labels[static_cast<size_t>(part.label_index)] == part.label;
+      });
+  if (sound) return;
+  Throw(ErrorCode::kConflict,
+        "Category '" + category + "' has changed meanwhile.",
+        "send the request again", "category");
+}
+
 constexpr char kPartColumns[] =
     "SELECT id, object_id, label_index, label, area, volume, confidence,"
     " faces FROM parts ";
@@ -47,9 +78,11 @@ constexpr char kPartColumns[] =
 namespace store {
 
 void InsertParts(Database& database, const StoredObject& object,
+                 const ObjectMeshes& labelled,
                  const std::vector<StoredPart>& parts,
                  const std::vector<Part>& solids) {
   GRASPDB_EXPECTS(parts.size() == solids.size());
+  CheckLabels(database, object.category, labelled, parts);
   for (size_t i = 0; i < parts.size(); ++i) {
     const StoredPart& part = parts[i];
     const std::string id = MakePartId(object, part, solids[i]);
@@ -108,16 +141,19 @@ Result<StoredPart> Store::FindPart(const std::string& id) const {
 }
 
 Result<std::vector<Part>> Store::ReadSolids(
-    const std::string& object_id) const {
+    const std::vector<StoredPart>& parts) const {
   return impl_->Read([&](Database& database) {
     std::vector<Part> solids;
-    Statement rows = database.Prepare(
-        "SELECT solid, confidence FROM parts WHERE object_id = ?"
-        " ORDER BY label_index");
-    rows.Bind(object_id);
-    while (rows.Step()) {
-      solids.push_back(Unwrap(DecodePart(rows.Blob(0))));
-      solids.back().confidence = rows.Double(1);
+    for (const StoredPart& part : parts) {
+      Statement row =
+          database.Prepare("SELECT solid, confidence FROM parts WHERE id = ?");
+      if (!row.Bind(part.id).Step()) {
+        Throw(ErrorCode::kConflict,
+              "Object " + part.object_id + " has been cut anew meanwhile.",
+              "send the request again");
+      }
+      solids.push_back(Unwrap(DecodePart(row.Blob(0))));
+      solids.back().confidence = row.Double(1);
     }
     return solids;
   });

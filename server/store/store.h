@@ -33,6 +33,17 @@ struct GraspSpaceFilter {
   std::string object_id;
 };
 
+/** What tells a stored grasp from all others, and from itself before a
+ simulator judged it. */
+struct GraspKey {
+  std::string id;
+  std::string object_id;  ///< Ids come again with a transfer done again.
+  std::optional<double> physical;
+};
+
+using CategoryChange =
+    std::function<Result<StoredCategory>(const StoredCategory&)>;
+
 struct AddedCategory {
   StoredCategory category;
   bool created{false};  ///< False when it was stored before.
@@ -77,9 +88,12 @@ class Store {
   /** The same category a second time changes nothing.
    @retval kConflict when another has its name. */
   Result<AddedCategory> InsertCategory(const StoredCategory& category);
-  /** Replaces title, parts' tasks, adjacency and segmentation settings.
-   @retval kNotFound; kConflict when labels change although objects use them. */
-  Result<StoredCategory> UpdateCategory(const StoredCategory& category);
+  /** Replaces title, parts, adjacency and segmentation settings by what
+   `change` makes of them; nobody else writes meanwhile.
+   @retval kNotFound; kConflict when labels change although objects use them;
+     and as `change`. */
+  Result<StoredCategory> UpdateCategory(const std::string& name,
+                                        const CategoryChange& change);
   Result<StoredCategory> FindCategory(const std::string& name) const;
   Result<Page<StoredCategory>> ListCategories(const PageRequest& page) const;
   /** @retval kConflict when it has objects and cascade is false. */
@@ -101,16 +115,17 @@ class Store {
   /** The file exactly as uploaded. */
   Result<std::string> ReadObjectBytes(const std::string& id) const;
   Result<ObjectMeshes> ReadObjectMeshes(const std::string& id) const;
+  using PartIds = std::optional<std::vector<std::string>>;
   /** Replaces an object's category, labels and parts.
+   @param instead_of  The parts, in label order, that the new ones were made of.
    @retval kConflict when grasps depend on the parts and cascade is false; the
-     grasps, grasp spaces and transfers go with cascade. */
-  Result<StoredObject> ReplaceParts(const std::string& object_id,
-                                    const std::string& category,
-                                    const StoredSegmentation& segmentation,
-                                    const ObjectMeshes& labelled,
-                                    const std::vector<StoredPart>& parts,
-                                    const std::vector<Part>& solids,
-                                    bool cascade);
+     grasps, grasp spaces and transfers go with cascade; when the object has
+     others than `instead_of`; and when the category's labels have changed. */
+  Result<StoredObject> ReplaceParts(
+      const std::string& object_id, const std::string& category,
+      const StoredSegmentation& segmentation, const ObjectMeshes& labelled,
+      const std::vector<StoredPart>& parts, const std::vector<Part>& solids,
+      bool cascade, const PartIds& instead_of = {});
   /** A novel object goes with its grasps and transfers.
    @retval kConflict for an example that grasps or transfers depend on, naming
      them, unless cascade. */
@@ -119,9 +134,11 @@ class Store {
   /** In label order. */
   Result<std::vector<StoredPart>> ListParts(const std::string& object_id) const;
   Result<StoredPart> FindPart(const std::string& id) const;
-  /** The solids of all parts of an object, in the order of ListParts(); their
-   object_faces are faces of the work mesh. */
-  Result<std::vector<Part>> ReadSolids(const std::string& object_id) const;
+  /** The solids of parts, as ListParts() or FindPart() gave them, in their
+   order; their object_faces are faces of the work mesh.
+   @retval kConflict when their object was cut anew since. */
+  Result<std::vector<Part>> ReadSolids(
+      const std::vector<StoredPart>& parts) const;
 
   // ---- Hands ----------------------------------------------------------------
   /** The same content a second time changes nothing.
@@ -151,12 +168,14 @@ class Store {
   Result<void> DeleteGraspSpace(const std::string& id, bool cascade);
 
   Result<StoredGrasp> FindGrasp(const std::string& id) const;
-  /** @retval kInvalidArgument for a cursor of another query. */
   /** Keeps what a simulator found: grasp ids and 0..1. Unknown ids are passed
    over. */
   Result<void> SetPhysical(
       const std::vector<std::pair<std::string, double>>& verdicts);
+  /** @retval kInvalidArgument for a cursor of another query. */
   Result<Page<StoredGrasp>> QueryGrasps(const GraspQuery& query) const;
+  /** The same without reading the grasps. */
+  Result<Page<GraspKey>> QueryGraspKeys(const GraspQuery& query) const;
 
   // ---- Transfers ------------------------------------------------------------
   /** Stores a transfer with its grasps (their ids are used as given). One with

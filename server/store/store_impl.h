@@ -121,8 +121,10 @@ int64_t CountOf(Database& database, const std::string& from_where,
                 const std::string& value);
 
 StoredObject ReadObject(Database& database, const std::string& id);
-/** Adds the parts of a stored object that has none. */
+/** Adds the parts of a stored object that has none.
+ @throws kConflict when the labels are not those of the category as it is. */
 void InsertParts(Database& database, const StoredObject& object,
+                 const ObjectMeshes& labelled,
                  const std::vector<StoredPart>& parts,
                  const std::vector<Part>& solids);
 std::vector<StoredPart> ReadParts(Database& database,

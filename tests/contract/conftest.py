@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from contract_client import ROOT, Contract
+from contract_client import ROOT, Contract, patient
 from live_server import LiveServer
 
 # So little of everything that learning takes seconds.
@@ -35,7 +35,7 @@ def server(binary, tmp_path_factory):
     database = folder / "contract.db"
     (folder / "hands").symlink_to(ROOT / "data" / "hands")
     subprocess.run([binary, "populate", str(folder), "--db", str(database)],
-                   check=True, timeout=400)
+                   check=True, timeout=patient(400))
     live = LiveServer(binary, database, folder)
     yield live
     assert live.alive(), live.log()

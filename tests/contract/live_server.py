@@ -5,6 +5,12 @@ import signal
 import subprocess
 import time
 
+from contract_client import LONGEST_WAIT, SLOWER, patient
+
+ENVIRONMENT = {"LC_ALL": "C"}
+if SLOWER > 1:
+    ENVIRONMENT["GRASPDB_WAIT"] = str(LONGEST_WAIT)
+
 
 class LiveServer:
     """Runs `graspdb serve` and ends it as an operator would."""
@@ -19,12 +25,12 @@ class LiveServer:
                 [*prefix, binary, "serve", "--db", str(database), "--port", "0",
                  "--port-file", str(self.port_file), *flags],
                 stdout=subprocess.DEVNULL, stderr=log, preexec_fn=preexec_fn,
-                env={**os.environ, "LC_ALL": "C"})
+                env=os.environ | ENVIRONMENT)
         self.port = self._wait_for_port()
         self.url = f"http://127.0.0.1:{self.port}"
 
     def _wait_for_port(self):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + patient(60)
         while time.monotonic() < deadline:
             if self.process.poll() is not None:
                 break
@@ -44,7 +50,7 @@ class LiveServer:
         if self.alive():
             self.process.send_signal(signal.SIGTERM)
         try:
-            return self.process.wait(timeout=60)
+            return self.process.wait(timeout=patient(60))
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise

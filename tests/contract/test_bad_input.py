@@ -417,14 +417,14 @@ def talk(port, head, rest=b"", most=0):
                                   "categories/mug/examples"])
 def test_an_announced_body_over_the_limit_is_refused_before_it_comes(
         narrow, path):
-    head = (f"POST /v1/{path} HTTP/1.1\r\nHost: h\r\nContent-Length: "
+    head = (f"POST /v1/{path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: "
             "99999999999\r\n\r\n").encode()
     received = talk(narrow.port, head)
     assert received.startswith(b"HTTP/1.1 413 ") and b" 2000 " in received
 
 
 def test_a_body_without_end_is_refused_at_the_limit(narrow):
-    head = (b"POST /v1/objects HTTP/1.1\r\nHost: h\r\n"
+    head = (b"POST /v1/objects HTTP/1.1\r\nHost: localhost\r\n"
             b"Transfer-Encoding: chunked\r\n\r\n")
     chunk = b"3e8\r\n" + b"#" * 1000 + b"\r\n"
     received = talk(narrow.port, head, chunk, most=50000)
@@ -484,6 +484,31 @@ def test_an_unknown_name_is_a_404_that_tells_the_known_ones(
         given = {**given, "path": {"id": world["example"]["id"]}}
     problem = client.call(operation, 404, **given)
     assert known in problem["hint"]
+
+
+def test_a_learn_order_names_each_hand_once(client, world, unchanged):
+    hand = "barrett-bh8-280"
+    for hands in ([hand, hand], [hand] * 50_000):
+        problem = client.call("postGraspSpaces", 400, path={"id": world["example"]["id"]},
+                              body={"hands": hands})
+        assert problem["field"] == "hands"
+
+
+def test_a_file_name_of_a_megabyte_is_refused(client, unchanged):
+    for name in ("m" * 300 + ".obj", "m" * 1_000_000 + ".obj"):
+        client.call("postObject", (400, 413), files={"mesh": (name, BOX)})
+
+
+@pytest.mark.parametrize("where", ["labels", "segmentation"])
+def test_a_tree_of_empty_lists_is_refused(client, world, unchanged, where):
+    many = b"[" + b"[]," * 1_390_000 + b"[]]"
+    if where == "labels":
+        client.call("postObject", 413, query={"category": "mug"},
+                    files={"mesh": ("m.obj", BOX), "labels": ("l.json", many)})
+    else:
+        client.call("postSegmentation", 413, path={"id": world["example"]["id"]},
+                    body=b'{"face_labels":' + many + b"}",
+                    headers={"Content-Type": "application/json"})
 
 
 @pytest.mark.parametrize("operation,name", [
@@ -951,6 +976,9 @@ def test_a_decoder_that_crashes_or_hangs_is_a_422_and_the_server_serves(
         assert client.call("listObjects", 200)["items"] == []
     mood.write_text("sound")
     client.call("postObject", 201, body=BOX)
+    metrics = requests.get(live.url + "/metrics", timeout=20).text
+    for end, count in (("crashed", 2), ("timed_out", 1), ("admitted", 1)):
+        assert f'graspdb_decoded_total{{end="{end}"}} {count}\n' in metrics
     assert live.stop() == 0
 
 

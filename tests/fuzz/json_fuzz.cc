@@ -16,6 +16,20 @@ void Expect(const Result<T>& result) {
   if (!result) Require(!result.error().message.empty());
 }
 
+// A category of two parts that touch, changed by whatever comes.
+void ExpectPatch(const std::string& text) {
+  StoredCategory category;
+  category.parts = {{"body", {}, {}}, {"handle", {}, {}}};
+  category.adjacency = {{0, 1}};
+  const auto patched = PatchCategory(category, text);
+  Expect(patched);
+  if (!patched) return;
+  const auto num_parts = static_cast<int>(patched->parts.size());
+  for (const auto& [a, b] : patched->adjacency) {
+    Require(a >= 0 && a < num_parts && b >= 0 && b < num_parts && a != b);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> MakeSeeds() {
@@ -24,6 +38,7 @@ std::vector<std::string> MakeSeeds() {
       R"({"parts":["body"],"hands":["barrett-bh8-280"],"seed":3,"parameters":{"swarm":{"particles":40}}})",
       R"({"labels":["body","handle","body"]})",
       R"({"label":"handle"})",
+      R"({"parts":[{"label":"handle","keep_free":{"use":"it burns"}}]})",
       R"({"settings":{"samples":200,"unary_sigma":0.2},"seed":1})",
       R"({"preset":"paper","contact":{"friction":0.4},"replan":{"iterations":10}})",
       R"({"name":"mug","title":"Mugs","parts":[{"label":"body"}],"topology":[],"examples":[{"mesh":"a.obj","labels":"a.json"}],"novel":[{"name":"b","mesh":"b.obj"}]})",
@@ -47,6 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Require(!json.error().message.empty());
   }
   Expect(CategoryFromJson(text));
+  ExpectPatch(text);
   Expect(CategoryFileFromJson(text));
   Expect(FaceLabelsFromJson(text));
   Expect(HandFileFromJson(text));

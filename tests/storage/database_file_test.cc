@@ -65,8 +65,8 @@ void ReadEverything(const Store& store) {
   if (objects) {
     for (const StoredObject& object : objects->items) {
       (void)store.ReadObjectMeshes(object.id);
-      (void)store.ListParts(object.id);
-      (void)store.ReadSolids(object.id);
+      const auto parts = store.ListParts(object.id);
+      if (parts) (void)store.ReadSolids(*parts);
     }
   }
   const auto spaces = store.ListGraspSpaces({}, {});

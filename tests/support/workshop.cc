@@ -280,4 +280,11 @@ std::shared_ptr<const HandModel> MakeTwoJawGripper() {
   return std::make_shared<const HandModel>(std::move(data));
 }
 
+int FindJoint(const HandModel& hand, const std::string& name) {
+  for (int j = 0; j < hand.num_joints(); ++j) {
+    if (hand.joints()[j].name == name) return j;
+  }
+  return -1;
+}
+
 }  // namespace graspdb::workshop

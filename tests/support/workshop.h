@@ -53,4 +53,7 @@ std::shared_ptr<const HandModel> LoadBarrettHand();
  apart when open, approaching along z. */
 std::shared_ptr<const HandModel> MakeTwoJawGripper();
 
+/** The place of a joint among the hand's, -1 when it has none of that name. */
+int FindJoint(const HandModel& hand, const std::string& name);
+
 }  // namespace graspdb::workshop

@@ -28,6 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kMostServed = 400'000;  // Triangles that a server takes.
+
 std::string FindProcessor() {
   std::ifstream file("/proc/cpuinfo");
   std::string line;
@@ -140,6 +142,7 @@ class SpeedBench {
     stages.meshes = meshes_;
     stages.sources = order_.quick ? 2 : 8;
     stages.grasps = order_.quick ? 10 : 100;
+    stages.search_seconds = order_.quick ? 1 : 5;
     stages.seed = order_.seed;
     stages.stopwatch = stopwatch();
     SubContext part(context_, "stages", 0.4, 0.6);
@@ -159,6 +162,13 @@ class SpeedBench {
       requests.meshes.push_back(WriteMesh(mesh, MeshFormat::kObj));
     }
     requests.repetitions = order_.quick ? 1 : 3;
+    if (order_.quick) {
+      requests.sources = 2;
+    } else {
+      GRASPDB_TRY(largest,
+                  ResampleMesh(decoder_, meshes_.front(), kMostServed));
+      requests.largest = WriteMesh(largest, MeshFormat::kObj);
+    }
     requests.query_seconds = order_.quick ? 0.3 : 2.0;
     SubContext part(context_, "requests", 0.6, 0.8);
     GRASPDB_TRY(json, MeasureRequests(requests, part.context()));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -12,8 +13,6 @@
 
 namespace graspdb {
 namespace {
-
-double Now() { return internal::ReadClock(true); }
 
 // The same mesh as bytes that no server has seen.
 std::string MakeFresh(const std::string& obj, int number) {
@@ -60,9 +59,12 @@ class RequestBench {
     return Now() - start;
   }
 
-  std::string GraspTarget(int count) const {
-    return fmt::format("/v1/grasps?category={}&format=obj&count={}",
-                       order_.category, count);
+  // Of so many sources of each part; a few sure grasps are enough, or all are
+  // wanted.
+  std::string GraspTarget(std::optional<int> count) const {
+    return fmt::format("/v1/grasps?category={}&format=obj&sources={}{}",
+                       order_.category, order_.sources,
+                       count ? fmt::format("&count={}", *count) : "");
   }
 
   // Each the first request of a server.
@@ -76,9 +78,17 @@ class RequestBench {
       GRASPDB_TRY(seconds, Post(client, GraspTarget(1), Middle()));
       timing.samples.push_back(seconds);
     }
-    rows_.push_back(EncodeSpeedRow(
-        {"POST /v1/grasps, count=1, cold", {}, timing, {}, 1.0}));
+    AddGrasps("count=1, cold", Middle(), timing, 1.0);
     return {};
+  }
+
+  void AddGrasps(const std::string& what, const std::string& mesh,
+                 const Timing& timing, std::optional<double> goal) {
+    rows_.push_back(EncodeSpeedRow({"POST /v1/grasps, " + what,
+                                    static_cast<int>(CountFaces(mesh)),
+                                    timing,
+                                    {},
+                                    goal}));
   }
 
   const std::string& Middle() const {
@@ -109,13 +119,17 @@ class RequestBench {
         GRASPDB_TRY(seconds, Post(client, GraspTarget(count), Middle()));
         timing.samples.push_back(seconds);
       }
-      rows_.push_back(
-          EncodeSpeedRow({fmt::format("POST /v1/grasps, count={}", count),
-                          static_cast<int>(CountFaces(Middle())),
-                          timing,
-                          {},
-                          count == 1 ? 1.0 : 2.0}));
+      AddGrasps(fmt::format("count={}", count), Middle(), timing,
+                count == 1 ? std::optional(1.0) : std::nullopt);
     }
+    context_.ReportProgress("all grasps", 0.6);
+    GRASPDB_TRY(all, Post(client, GraspTarget({}), Middle()));
+    AddGrasps(fmt::format("all of {} sources", order_.sources), Middle(),
+              MakeTiming(all), 2.0);
+    if (order_.largest.empty()) return {};
+    context_.ReportProgress("the largest mesh", 0.8);
+    GRASPDB_TRY(largest, Post(client, GraspTarget(1), order_.largest));
+    AddGrasps("count=1", order_.largest, MakeTiming(largest), 15.0);
     return {};
   }
 

@@ -15,7 +15,9 @@ struct RequestOrder {
   std::vector<std::string> server_options;
   std::string category{"mug"};
   std::vector<std::string> meshes;  ///< OBJ files, coarse to fine.
+  std::string largest;  ///< One as large as is taken; empty: not measured.
   int repetitions{3};
+  int sources{40};  ///< Of each part, where all are tried.
   double query_seconds{2.0};
 };
 

@@ -16,6 +16,7 @@ struct StageOrder {
   std::vector<TriangleMesh> meshes;  ///< Novel ones of the category.
   int sources{8};                    ///< Source grasps per part.
   int grasps{100};                   ///< Learned once more, of one part.
+  int search_seconds{5};             ///< Of a search from scratch.
   uint64_t seed{1};
   StopwatchOptions stopwatch;
 };

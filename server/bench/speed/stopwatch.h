@@ -21,6 +21,9 @@ Json EncodeTiming(const Timing& timing);
 
 double CalcMedian(const Timing& timing);
 
+/** What was measured once. */
+inline Timing MakeTiming(double seconds) { return {{seconds}, 1}; }
+
 /** How a call is timed. */
 struct StopwatchOptions {
   double seconds{0.5};  ///< In all, about; at least three samples are taken.
@@ -28,30 +31,27 @@ struct StopwatchOptions {
   bool wall{false};  ///< Not the calling thread's time but the wall clock's.
 };
 
-namespace internal {
-
-inline double ReadClock(bool wall) {
-  if (!wall) return ThreadSeconds();
+/** The wall clock, s. */
+inline double Now() {
   return std::chrono::duration<double>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
-
-}  // namespace internal
 
 /** Times f(), which returns a number, so that its work cannot be left out. */
 template <class F>
 Timing TimeCalls(const F& f, const StopwatchOptions& options = {}) {
   constexpr double kShortest = 1e-3;  // Of a sample, s, for the clock's sake.
   constexpr size_t kFewest = 3;
+  const auto read_clock = options.wall ? Now : ThreadSeconds;
   volatile double sink = 0.0;
   Timing timing;
   double spent = 0.0;
   while (true) {
-    const double start = internal::ReadClock(options.wall);
+    const double start = read_clock();
     for (int64_t i = 0; i < timing.calls; ++i)
       sink = sink + static_cast<double>(f());
-    const double took = internal::ReadClock(options.wall) - start;
+    const double took = read_clock() - start;
     if (took < kShortest && timing.samples.empty()) {
       timing.calls *= took < 0.1 * kShortest ? 10 : 2;
       continue;

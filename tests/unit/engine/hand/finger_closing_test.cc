@@ -10,13 +10,6 @@
 namespace graspdb {
 namespace {
 
-int FindJoint(const HandModel& hand, const std::string& name) {
-  for (int j = 0; j < hand.num_joints(); ++j) {
-    if (hand.joints()[j].name == name) return j;
-  }
-  return -1;
-}
-
 TEST(CloseFingers, InTheAirEndsAtTheLimits) {
   const HandShape hand(workshop::MakeTwoJawGripper());
   const Solid far(
@@ -41,9 +34,9 @@ TEST(CloseFingers, DistalLinkGoesOnAfterTheInnerOneIsBlocked) {
   bool broke_away = false;
   for (const char* finger : {"bh_j1", "bh_j2", "bh_j3"}) {
     const double j2 =
-        q[FindJoint(hand.model(), std::string(finger) + "2_joint")];
+        q[workshop::FindJoint(hand.model(), std::string(finger) + "2_joint")];
     const double j3 =
-        q[FindJoint(hand.model(), std::string(finger) + "3_joint")];
+        q[workshop::FindJoint(hand.model(), std::string(finger) + "3_joint")];
     EXPECT_GE(j3, j2 / 3 - 1e-9);
     broke_away = broke_away || j3 > j2 / 3 + 0.05;
   }

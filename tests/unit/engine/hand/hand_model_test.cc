@@ -173,13 +173,6 @@ const KinematicsVector kVectors[] = {
        {0.060312, 0.704530, 0.060312, 0.704530}}}},
 };
 
-int FindJoint(const HandModel& hand, const std::string& name) {
-  for (int j = 0; j < hand.num_joints(); ++j) {
-    if (hand.joints()[j].name == name) return j;
-  }
-  return -1;
-}
-
 int FindLink(const HandModel& hand, const std::string& name) {
   for (int i = 0; i < hand.num_links(); ++i) {
     if (hand.links()[i].name == name) return i;
@@ -196,12 +189,12 @@ TEST(BarrettHand, KinematicsReproduceTheTwelvePublishedVectors) {
       Eigen::Vector3d::Zero()};
   for (const KinematicsVector& expected : kVectors) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(hand->num_joints());
-    q[FindJoint(*hand, "bh_j11_joint")] = expected.spread;
-    q[FindJoint(*hand, "bh_j21_joint")] = expected.spread;
+    q[workshop::FindJoint(*hand, "bh_j11_joint")] = expected.spread;
+    q[workshop::FindJoint(*hand, "bh_j21_joint")] = expected.spread;
     for (int f = 0; f < 3; ++f) {
       const std::string finger = "bh_j" + std::to_string(f + 1);
-      q[FindJoint(*hand, finger + "2_joint")] = expected.j2[f];
-      q[FindJoint(*hand, finger + "3_joint")] = expected.j3[f];
+      q[workshop::FindJoint(*hand, finger + "2_joint")] = expected.j2[f];
+      q[workshop::FindJoint(*hand, finger + "3_joint")] = expected.j3[f];
     }
     const auto X_HL = CalcLinkPoses(*hand, q);
     for (int f = 0; f < 3; ++f) {
@@ -236,8 +229,8 @@ TEST(BarrettHand, MotorAngleIsThreeQuartersOfBothJointsEvenAfterBreakaway) {
   Eigen::VectorXd q = hand->CalcCoupledJoints(motors);
   EXPECT_NEAR((hand->CalcActuators(q) - motors).norm(), 0.0, 1e-12);
   // F1's med link is blocked; the motor turns 0.3 rad further: J3 gains 0.4.
-  const int j12 = FindJoint(*hand, "bh_j12_joint");
-  const int j13 = FindJoint(*hand, "bh_j13_joint");
+  const int j12 = workshop::FindJoint(*hand, "bh_j12_joint");
+  const int j13 = workshop::FindJoint(*hand, "bh_j13_joint");
   EXPECT_NEAR(q[j13], q[j12] / 3.0, 1e-12);
   q[j13] += 0.4;
   EXPECT_NEAR(hand->CalcActuators(q)[1], 0.75 * (q[j12] + q[j13]), 1e-12);

@@ -99,6 +99,17 @@ TEST(ParseJson, RefusesMoreBytesThanAllowedWithoutParsingThem) {
   EXPECT_EQ(parsed.error().code, ErrorCode::kTooLarge);
 }
 
+TEST(ParseJson, RefusesMoreValuesThanAllowed) {
+  JsonLimits limits;
+  limits.max_values = 4;
+  EXPECT_TRUE(ParseJson("[1,{},[]]", limits));
+  for (const char* text : {"[1,2,3,4]", "[[[[[]]]]]", "{\"a\":[1,2,3]}"}) {
+    const auto parsed = ParseJson(text, limits);
+    ASSERT_FALSE(parsed) << text;
+    EXPECT_EQ(parsed.error().code, ErrorCode::kTooLarge) << text;
+  }
+}
+
 TEST(ParseJson, ReadsManyKeysInLinearTime) {
   std::string text = "{";
   for (int i = 0; i < 60'000; ++i) {

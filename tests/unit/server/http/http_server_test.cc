@@ -89,6 +89,8 @@ class HttpServerTest : public testing::Test {
     options.limits.idle_timeout = std::chrono::seconds(2);
     options.limits.head_timeout = std::chrono::seconds(1);
     options.limits.body_timeout = std::chrono::seconds(1);
+    options.limits.write_timeout = std::chrono::seconds(2);
+    options.limits.least_bytes_per_second = 1 << 20;
     options.log = [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
       log_ += line + "\n";
@@ -181,14 +183,14 @@ class HttpServerTest : public testing::Test {
   }
   std::string Get(const std::string& target, const std::string& fields = "") {
     return Exchange("GET " + target +
-                    " HTTP/1.1\r\nHost: h\r\nConnection: close\r\n" + fields +
-                    "\r\n");
+                    " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +
+                    fields + "\r\n");
   }
   std::string Post(const std::string& target, const std::string& fields,
                    const std::string& body) {
     return Exchange("POST " + target +
-                    " HTTP/1.1\r\nHost: h\r\nConnection: close\r\n" + fields +
-                    "Content-Length: " + std::to_string(body.size()) +
+                    " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" +
+                    fields + "Content-Length: " + std::to_string(body.size()) +
                     "\r\n\r\n" + body);
   }
   std::string log() {
@@ -220,7 +222,7 @@ TEST_F(HttpServerTest, ARequestIdThatCouldForgeALogIsReplaced) {
 
 TEST_F(HttpServerTest, HeadIsGetWithoutBody) {
   const std::string answer = Exchange(
-      "HEAD /hello/x HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+      "HEAD /hello/x HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_THAT(answer, HasSubstr("Content-Length: 7\r\n"));
   EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
 }
@@ -228,7 +230,7 @@ TEST_F(HttpServerTest, HeadIsGetWithoutBody) {
 TEST_F(HttpServerTest, ABodyInPiecesIsSentChunkByChunk) {
   Client client(port_);
   for (int i = 0; i < 2; ++i) {  // The connection stays.
-    client.Send("GET /pieces HTTP/1.1\r\nHost: h\r\n\r\n");
+    client.Send("GET /pieces HTTP/1.1\r\nHost: localhost\r\n\r\n");
     const std::string answer = client.ReadUntil("\r\n0\r\n\r\n");
     EXPECT_THAT(answer, HasSubstr("Transfer-Encoding: chunked\r\n"));
     EXPECT_THAT(answer, EndsWith("\r\n\r\n8\r\npiece 3\n\r\n8\r\npiece 2\n"
@@ -239,14 +241,14 @@ TEST_F(HttpServerTest, ABodyInPiecesIsSentChunkByChunk) {
 
 TEST_F(HttpServerTest, ABodyInPiecesEndsWithTheConnectionInHttp10) {
   const std::string answer =
-      Exchange("GET /pieces HTTP/1.0\r\nHost: h\r\n\r\n");
+      Exchange("GET /pieces HTTP/1.0\r\nHost: localhost\r\n\r\n");
   EXPECT_THAT(answer, Not(HasSubstr("chunked")));
   EXPECT_THAT(answer, EndsWith("\r\n\r\npiece 3\npiece 2\npiece 1\n"));
 }
 
 TEST_F(HttpServerTest, HeadOfABodyInPiecesHasNone) {
-  const std::string answer =
-      Exchange("HEAD /pieces HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+  const std::string answer = Exchange(
+      "HEAD /pieces HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
   EXPECT_THAT(answer, Not(HasSubstr("piece")));
@@ -255,7 +257,7 @@ TEST_F(HttpServerTest, HeadOfABodyInPiecesHasNone) {
 TEST_F(HttpServerTest, AnEndlessBodyEndsWhenItsReaderGoes) {
   {
     Client client(port_);
-    client.Send("GET /endless HTTP/1.1\r\nHost: h\r\n\r\n");
+    client.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
     EXPECT_THAT(client.ReadUntil(kOnAndOn), EndsWith(kOnAndOn));
     EXPECT_FALSE(gone_);
   }
@@ -264,7 +266,7 @@ TEST_F(HttpServerTest, AnEndlessBodyEndsWhenItsReaderGoes) {
 
 TEST_F(HttpServerTest, NoContentHasNoBody) {
   const std::string answer = Exchange(
-      "DELETE /thing HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+      "DELETE /thing HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 204 No Content\r\n"));
   EXPECT_THAT(answer, EndsWith("\r\n\r\n"));
 }
@@ -272,16 +274,16 @@ TEST_F(HttpServerTest, NoContentHasNoBody) {
 TEST_F(HttpServerTest, KeepsAConnectionForManyRequests) {
   Client client(port_);
   for (int i = 0; i < 20; ++i) {
-    client.Send("GET /hello/x HTTP/1.1\r\nHost: h\r\n\r\n");
+    client.Send("GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n");
     EXPECT_THAT(client.ReadUntil("hello x"), EndsWith("hello x"));
   }
 }
 
 TEST_F(HttpServerTest, AnswersPipelinedRequestsInOrder) {
   const std::string answer = Exchange(
-      "GET /hello/1 HTTP/1.1\r\nHost: h\r\n\r\n"
-      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 2\r\n\r\n{}"
-      "GET /hello/2 HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+      "GET /hello/1 HTTP/1.1\r\nHost: localhost\r\n\r\n"
+      "POST /json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n\r\n{}"
+      "GET /hello/2 HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const size_t one = answer.find("hello 1");
   const size_t two = answer.find("\r\n\r\n{}");
   const size_t three = answer.find("hello 2");
@@ -296,9 +298,9 @@ TEST_F(HttpServerTest, UnknownPathsAndMethodsAreProblems) {
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 405"));
   EXPECT_THAT(answer, HasSubstr("Allow: POST\r\n"));
   EXPECT_THAT(answer, HasSubstr("Content-Type: application/problem+json"));
-  EXPECT_THAT(
-      Exchange("BREW /json HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n"),
-      StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(Exchange("BREW /json HTTP/1.1\r\nHost: localhost\r\nConnection: "
+                       "close\r\n\r\n"),
+              StartsWith("HTTP/1.1 405"));
   EXPECT_THAT(Get("/%zz"), StartsWith("HTTP/1.1 400"));
 }
 
@@ -345,9 +347,10 @@ TEST_F(HttpServerTest, AClientThatStallsIsCutOffWhenTheServerHasWaitedEnough) {
   std::thread serving([&] { EXPECT_TRUE(server.Serve()); });
   Client uploads(port);
   uploads.Send(
-      "POST /upload HTTP/1.1\r\nHost: h\r\nContent-Length: 9\r\n\r\nab");
+      "POST /upload HTTP/1.1\r\nHost: localhost\r\nContent-Length: "
+      "9\r\n\r\nab");
   Client reads(port);
-  reads.Send("GET /endless HTTP/1.1\r\nHost: h\r\n\r\n");
+  reads.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
   reads.ReadUntil(kOnAndOn);
   server.Stop();
   server.CutConnections();
@@ -377,10 +380,10 @@ TEST_F(HttpServerTest, LargeBodiesBeyondWhatMemoryIsForAreA503) {
   std::thread serving([&] { EXPECT_TRUE(server.Serve()); });
   const auto post = [&](const std::string& target, size_t size) {
     Client client(port);
-    client.Send(
-        "POST " + target +
-        " HTTP/1.1\r\nHost: h\r\nConnection: close\r\nContent-Length: " +
-        std::to_string(size) + "\r\n\r\n" + std::string(size, 'x'));
+    client.Send("POST " + target +
+                " HTTP/1.1\r\nHost: localhost\r\nConnection: "
+                "close\r\nContent-Length: " +
+                std::to_string(size) + "\r\n\r\n" + std::string(size, 'x'));
     return client.ReadAll();
   };
   std::vector<std::thread> holders;
@@ -404,7 +407,7 @@ TEST_F(HttpServerTest, LargeBodiesBeyondWhatMemoryIsForAreA503) {
 TEST_F(HttpServerTest, ReadsAPlainAndAChunkedBody) {
   EXPECT_THAT(Post("/json", "Content-Type: application/json\r\n", "{\"a\":1}"),
               EndsWith("\r\n\r\n{\"a\":1}"));
-  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: localhost\r\n"
                        "Transfer-Encoding: chunked\r\n\r\n"
                        "2\r\n{\"\r\n5\r\na\":1}\r\n0\r\n\r\n"),
               EndsWith("\r\n\r\n{\"a\":1}"));
@@ -427,7 +430,7 @@ TEST_F(HttpServerTest, ReadsAFormWithFileAndFields) {
 TEST_F(HttpServerTest, ABodyOverItsLimitIsRefusedUnread) {
   Client client(port_);
   client.Send(
-      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 101\r\n"
+      "POST /json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 101\r\n"
       "Expect: 100-continue\r\n\r\n");
   const std::string answer = client.ReadAll();
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 413"));
@@ -438,7 +441,7 @@ TEST_F(HttpServerTest, ABodyOverItsLimitIsRefusedUnread) {
 TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsWanted) {
   Client client(port_);
   client.Send(
-      "POST /json HTTP/1.1\r\nHost: h\r\nContent-Length: 2\r\n"
+      "POST /json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n"
       "Expect: 100-continue\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(client.ReadUntil("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
   client.Send("{}");
@@ -448,10 +451,53 @@ TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsWanted) {
 TEST_F(HttpServerTest, AChunkedBodyOverItsLimitIsRefused) {
   std::string body;
   for (int i = 0; i < 30; ++i) body += "5\r\n[[[[[\r\n";
-  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: localhost\r\n"
                        "Transfer-Encoding: chunked\r\n\r\n" +
                        body + "0\r\n\r\n"),
               StartsWith("HTTP/1.1 413"));
+}
+
+TEST_F(HttpServerTest, ALineBetweenChunksThatDoesNotEndIsRefusedSoon) {
+  const std::string head =
+      "POST /upload HTTP/1.1\r\nHost: localhost\r\n"
+      "Transfer-Encoding: chunked\r\n\r\n";
+  EXPECT_THAT(Exchange(head + "1;" + std::string(5000, 'a')),
+              StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(Exchange(head + "2\r\nab\r\n" + std::string(5000, '0')),
+              StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(HttpServerTest, ManySmallChunksAreNoLongLine) {
+  std::string body;
+  for (int i = 0; i < 900; ++i) body += "1\r\nx\r\n";
+  EXPECT_THAT(Exchange("POST /upload HTTP/1.1\r\nHost: localhost\r\n"
+                       "Transfer-Encoding: chunked\r\n\r\n" +
+                       body + "0\r\n\r\n"),
+              EndsWith(std::string(900, 'x')));
+}
+
+TEST_F(HttpServerTest, PagesOfOtherSitesAreRefused) {
+  EXPECT_THAT(Exchange("GET /hello/x HTTP/1.1\r\nHost: evil.com\r\n\r\n"),
+              StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(Post("/json", "Origin: http://evil.com\r\n", "{}"),
+              StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(Post("/json", "Origin: http://localhost\r\n", "{}"),
+              StartsWith("HTTP/1.1 200"));
+}
+
+TEST_F(HttpServerTest, WhatItSendsIsNoPageUnlessARouteSaysSo) {
+  EXPECT_THAT(Get("/hello/x"),
+              HasSubstr("Content-Security-Policy: default-src 'none'; "));
+}
+
+TEST_F(HttpServerTest, WhoTakesAnAnswerWordByWordIsCutOff) {
+  Client client(port_);
+  client.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  for (int i = 0; i < 100 && !gone_; ++i) {
+    client.ReadUntil(" ");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_TRUE(gone_);
 }
 
 TEST_F(HttpServerTest, ContentCodingsAndOtherTypesAreRefused) {
@@ -462,14 +508,15 @@ TEST_F(HttpServerTest, ContentCodingsAndOtherTypesAreRefused) {
 }
 
 TEST_F(HttpServerTest, AnUnreadBodyIsNeverTakenForARequest) {
-  const std::string smuggled = "GET /hello/2 HTTP/1.1\r\nHost: h\r\n\r\n";
+  const std::string smuggled =
+      "GET /hello/2 HTTP/1.1\r\nHost: localhost\r\n\r\n";
   const std::string answer =
-      Exchange("POST /nothing HTTP/1.1\r\nHost: h\r\nContent-Length: " +
+      Exchange("POST /nothing HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
                std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled);
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(answer, Not(HasSubstr("hello")));
   const std::string get =
-      Exchange("GET /hello/1 HTTP/1.1\r\nHost: h\r\nContent-Length: " +
+      Exchange("GET /hello/1 HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
                std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled);
   EXPECT_THAT(get, StartsWith("HTTP/1.1 400"));
   EXPECT_THAT(get, Not(HasSubstr("hello")));
@@ -482,17 +529,17 @@ TEST_F(HttpServerTest, RangesAreIgnored) {
 }
 
 TEST_F(HttpServerTest, AnEndlessHeadIsRefused) {
-  EXPECT_THAT(
-      Exchange("GET / HTTP/1.1\r\nHost: h\r\n" + std::string(40'000, 'a')),
-      StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(Exchange("GET / HTTP/1.1\r\nHost: localhost\r\n" +
+                       std::string(40'000, 'a')),
+              StartsWith("HTTP/1.1 431"));
   EXPECT_THAT(Exchange("GET /" + std::string(9'000, 'a') +
-                       " HTTP/1.1\r\nHost: h\r\n\r\n"),
+                       " HTTP/1.1\r\nHost: localhost\r\n\r\n"),
               StartsWith("HTTP/1.1 414"));
 }
 
 TEST_F(HttpServerTest, ASlowClientIsToldSo) {
   EXPECT_THAT(Exchange("GET / HTT"), StartsWith("HTTP/1.1 408"));
-  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: h\r\n"
+  EXPECT_THAT(Exchange("POST /json HTTP/1.1\r\nHost: localhost\r\n"
                        "Content-Length: 5\r\n\r\n{"),
               StartsWith("HTTP/1.1 408"));
 }
@@ -502,11 +549,13 @@ TEST_F(HttpServerTest, AnswersOrDropsEveryMutantOfARequest) {
       "--B\r\nContent-Disposition: form-data; name=\"mesh\"; "
       "filename=\"m.stl\"\r\n\r\nbytes\r\n--B--\r\n";
   const std::vector<std::string> seeds = {
-      "GET /hello/a%20b?c=d&e HTTP/1.1\r\nHost: h\r\nRange: bytes=0-1\r\n\r\n",
-      "POST /upload?seed=3 HTTP/1.1\r\nHost: h\r\nContent-Type: "
+      "GET /hello/a%20b?c=d&e HTTP/1.1\r\nHost: localhost\r\nRange: "
+      "bytes=0-1\r\n\r\n",
+      "POST /upload?seed=3 HTTP/1.1\r\nHost: localhost\r\nContent-Type: "
       "multipart/form-data; boundary=B\r\nContent-Length: " +
           std::to_string(form.size()) + "\r\n\r\n" + form,
-      "POST /json HTTP/1.1\r\nHost: h\r\nTransfer-Encoding: chunked\r\n\r\n"
+      "POST /json HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: "
+      "chunked\r\n\r\n"
       "2\r\n{}\r\n0\r\n\r\n"};
   Random random(1);
   for (int i = 0; i < 1500; ++i) {
@@ -531,9 +580,9 @@ TEST_F(HttpServerTest, AnswersOrDropsEveryMutantOfARequest) {
 
 TEST_F(HttpServerTest, StopLetsARequestInFlightEnd) {
   Client waiting(port_);
-  waiting.Send("GET /wait HTTP/1.1\r\nHost: h\r\n\r\n");
+  waiting.Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
   Client idle(port_);
-  idle.Send("GET /hello/x HTTP/1.1\r\nHost: h\r\n\r\n");
+  idle.Send("GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n");
   idle.ReadUntil("hello x");
   Stop();
   EXPECT_THAT(waiting.ReadAll(), EndsWith("\r\n\r\nstopped"));

@@ -56,6 +56,15 @@ TEST(Multipart, NamesMayHoldQuotesSemicolonsAndAnyCase) {
   EXPECT_EQ(parts->at(0).filename, "a;\"b\".stl");
 }
 
+TEST(Multipart, AHeadHasALimit) {
+  const std::string name(HttpLimits{}.max_form_head_bytes, 'a');
+  const auto parts = Parse(
+      "--XX\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"" +
+      name + "\"\r\n\r\nx\r\n--XX--");
+  ASSERT_FALSE(parts);
+  EXPECT_EQ(parts.error().code, ErrorCode::kTooLarge);
+}
+
 TEST(Multipart, TheBoundaryMayBeQuoted) {
   const auto parts = Parse(
       "--a b\r\nContent-Disposition: form-data; name=n\r\n\r\nv\r\n--a b--",

@@ -56,6 +56,36 @@ TEST(BackupFolder, LeavesAloneWhatIsNotItsOwn) {
   EXPECT_TRUE(fs::exists(path + "/graspdb-20000101T000000.000Z.db"));
 }
 
+TEST(BackupFolder, RemovesWhatAKilledServerLeft) {
+  const TempFolder temp;
+  const auto store = Store::Open(temp.File("a.db")).value();
+  const std::string path = temp.File("backups");
+  fs::create_directory(path);
+  const std::string old = path + "/graspdb-20200101T000000.000Z.db";
+  for (const char* end : {".new", ".new.partial", ".sha256.new", ".sha256"}) {
+    std::ofstream(old + end) << "half";
+  }
+  BackupFolder folder(path, 3);
+  ASSERT_TRUE(folder.Add(*store));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 2);
+}
+
+TEST(BackupFolder, AnswersAndKeepsTheOneItMadeThoughTheClockWasTurnedBack) {
+  const TempFolder temp;
+  const auto store = Store::Open(temp.File("a.db")).value();
+  const std::string path = temp.File("backups");
+  fs::create_directory(path);
+  const std::string later = path + "/graspdb-29990101T000000.000Z.db";
+  std::ofstream(later) << "later";
+  std::ofstream(later + ".sha256") << "0123  later\n";
+  BackupFolder folder(path, 1);
+  const StoredBackup made = folder.Add(*store).value();
+  EXPECT_TRUE(fs::exists(path + "/" + made.name));
+  EXPECT_FALSE(fs::exists(later));
+  EXPECT_EQ(made.name, folder.List().value().at(0).name);
+  EXPECT_EQ(made.sha256, folder.List().value().at(0).sha256);
+}
+
 TEST(BackupFolder, ThatCannotBeMadeIsAnError) {
   const TempFolder temp;
   const auto store = Store::Open(temp.File("a.db")).value();

@@ -104,13 +104,27 @@ TEST(Upload, AStatedFormatComesFirst) {
 
 TEST(Upload, TakesTheFormsPartMesh) {
   HttpRequest request;
-  request.files = {{"labels", "l.json", "", "{}"},
+  request.files = {{"labels", "l.json", "", R"({"face_labels":["lid"]})"},
                    {"mesh", "a.obj", "", "bytes"}};
   const auto upload = Upload(request);
   ASSERT_TRUE(upload && *upload);
   EXPECT_EQ((*upload)->bytes, "bytes");
   EXPECT_EQ((*upload)->file_name, "a.obj");
-  EXPECT_EQ(FindFile(request, "labels"), "{}");
+  WorkSlots slots(1, 0);
+  EXPECT_EQ(ReadLabels(request, slots).value(),
+            std::vector<std::string>{"lid"});
+}
+
+TEST(Upload, ManyLabelsWaitForASlot) {
+  std::string labels = "\"lid\"";
+  for (int i = 0; i < 20'000; ++i) labels += ",\"lid\"";
+  HttpRequest request;
+  request.files = {
+      {"labels", "l.json", "", "{\"face_labels\":[" + labels + "]}"}};
+  WorkSlots slots(1, 0);
+  EXPECT_EQ(ReadLabels(request, slots).value().size(), 20'001u);
+  const auto taken = slots.Take({});
+  EXPECT_EQ(ReadLabels(request, slots).error().code, ErrorCode::kOverloaded);
 }
 
 TEST(Upload, AnEmptyFileIsAFile) {

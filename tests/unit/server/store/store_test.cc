@@ -99,14 +99,50 @@ TEST_F(StoreTest, UnknownNamesAreNotFoundWithTheKnownOnesInTheHint) {
 
 TEST_F(StoreTest, LabelsOfACategoryStayWhileObjectsUseThem) {
   StoredCategory category = MakeMugCategory();
+  const auto change = [&](const StoredCategory&) -> Result<StoredCategory> {
+    return category;
+  };
   category.title = "Cups";
   category.parts[0].tasks.clear();
-  EXPECT_EQ(store_->UpdateCategory(category).value().title, "Cups");
+  EXPECT_EQ(store_->UpdateCategory("mug", change).value().title, "Cups");
   EXPECT_THAT(store_->FindCategory("mug").value().parts[0].tasks, IsEmpty());
   AddObject("a", ObjectRole::kNovel);
   category.parts[0].label = "bowl";
-  EXPECT_EQ(store_->UpdateCategory(category).error().code,
+  EXPECT_EQ(store_->UpdateCategory("mug", change).error().code,
             ErrorCode::kConflict);
+}
+
+TEST_F(StoreTest, ChangesOfACategoryAtOnceAreBothKept) {
+  constexpr int kEach = 50;
+  const auto count_up =
+      [](const StoredCategory& old) -> Result<StoredCategory> {
+    StoredCategory category = old;
+    category.title += "x";
+    return category;
+  };
+  const auto title = [this] {
+    return store_->FindCategory("mug").value().title;
+  };
+  const size_t before = title().size();
+  const auto work = [&] {
+    for (int i = 0; i < kEach; ++i) {
+      EXPECT_TRUE(store_->UpdateCategory("mug", count_up));
+    }
+  };
+  {
+    std::jthread other(work);
+    work();
+  }
+  EXPECT_EQ(title().size(), before + 2 * kEach);
+}
+
+TEST_F(StoreTest, WhatAChangeOfACategoryFailsWithIsToldAndNothingChanges) {
+  const auto fail = [](const StoredCategory&) -> Result<StoredCategory> {
+    return Error{ErrorCode::kInvalidArgument, "no"};
+  };
+  const StoredCategory before = store_->FindCategory("mug").value();
+  EXPECT_EQ(store_->UpdateCategory("mug", fail).error().message, "no");
+  EXPECT_EQ(store_->FindCategory("mug").value(), before);
 }
 
 TEST_F(StoreTest, HandsComeBackAsTheyWereAndTheSameOneAgainIsNoNews) {
@@ -142,7 +178,7 @@ TEST_F(StoreTest, ObjectsComeBackAsTheyWere) {
   EXPECT_EQ(parts[1].faces, object.parts[1].faces);
   EXPECT_THAT(parts[1].adjacent, ElementsAre("body"));
   EXPECT_EQ(store_->FindPart(parts[1].id).value().object_id, found.id);
-  const auto solids = store_->ReadSolids(found.id).value();
+  const auto solids = store_->ReadSolids(parts).value();
   EXPECT_EQ(solids[1].solid_O, object.solids[1].solid_O);
   EXPECT_EQ(solids[1].confidence, 0.75);
 }
@@ -513,6 +549,34 @@ TEST_F(StoreTest, NewPartsReplaceTheOldOnesButNotUnderGraspsThatUseThem) {
   EXPECT_EQ(replace(false).error().code, ErrorCode::kConflict);
   EXPECT_TRUE(replace(true));
   EXPECT_EQ(store_->Count().value().grasps, 0);
+}
+
+TEST_F(StoreTest, PartsMadeOfOthersThanThereAreNowAreAConflict) {
+  const StoredObject example = AddObject("e", ObjectRole::kExample);
+  const auto before = store_->ListParts(example.id).value();
+  NewObject other = MakeNewObject("e", ObjectRole::kExample);
+  other.parts.pop_back();
+  other.solids.pop_back();
+  const auto replace = [&](const Store::PartIds& instead_of) {
+    return store_->ReplaceParts(example.id, "mug", other.record.segmentation,
+                                other.meshes, other.parts, other.solids, false,
+                                instead_of);
+  };
+  const Store::PartIds both{{before[0].id, before[1].id}};
+  EXPECT_TRUE(replace(both));
+  EXPECT_EQ(replace(both).error().code, ErrorCode::kConflict);
+  EXPECT_EQ(store_->ReadSolids(before).error().code, ErrorCode::kConflict);
+}
+
+TEST_F(StoreTest, LabelsThatTheCategoryDoesNotHaveAreAConflict) {
+  NewObject misnamed = MakeNewObject("a", ObjectRole::kExample);
+  misnamed.parts[1].label = "spout";
+  NewObject beyond = MakeNewObject("b", ObjectRole::kExample);
+  beyond.meshes.canonical_labels.back() = 2;
+  for (const NewObject& object : {misnamed, beyond}) {
+    EXPECT_EQ(store_->InsertObject(object).error().code, ErrorCode::kConflict);
+  }
+  EXPECT_EQ(store_->Count().value().objects, 0);
 }
 
 TEST_F(StoreTest, JobsAreClaimedOnceInOrderSlowOnesApart) {
