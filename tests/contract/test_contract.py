@@ -1149,7 +1149,7 @@ def test_other_content_types_and_codings_are_a_415(contract, world):
 def test_every_operation_refuses_an_unknown_parameter(contract, world):
     values = {"id": UNKNOWN_UUID, "name": "x", "file": "x"}
     for operation_id, method, path, operation, _ in operations(contract.spec):
-        if "400" not in operation["responses"]:
+        if path == "/":  # The page reads its own query.
             continue
         url = path.format(**values)
         reply = contract.session.request(

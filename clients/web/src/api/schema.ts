@@ -1527,6 +1527,7 @@ export interface operations {
                     readonly "text/html": string;
                 };
             };
+            readonly 400: components["responses"]["BadRequest"];
         };
     };
     readonly getViewerFile: {
