@@ -268,6 +268,12 @@ Result<ImportResult> Service::Relabel(const std::string& part_id,
   if (label == part.label) return ImportResult{object, before, false};
   std::vector<std::string> instead_of;
   for (const StoredPart& one : before) instead_of.push_back(one.id);
+  if (std::find(instead_of.begin(), instead_of.end(), part.id) ==
+      instead_of.end()) {
+    return Error{ErrorCode::kConflict,
+                 "Object " + object.id + " has been cut anew meanwhile.",
+                 "send the request again"};
+  }
   GRASPDB_TRY(meshes, store_->ReadObjectMeshes(object.id));
   const auto index = static_cast<int>(found - labels.begin());
   std::replace(meshes.canonical_labels.begin(), meshes.canonical_labels.end(),
