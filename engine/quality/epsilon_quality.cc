@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -83,14 +83,15 @@ std::optional<Wrench> CalcOrthogonal(
   return normal.normalized();
 }
 
-// An inner approximation of the hull that grows one point at a time.
+// An inner approximation of the hull that grows one point at a time. A new one
+// takes over the memory of the last.
 class ExpandingPolytope {
  public:
-  explicit ExpandingPolytope(const Wrenches& points)
-      : points_(points), reach_(points.cols()) {}
-
   // False when the points do not span six dimensions.
-  bool Start() {
+  bool Start(const Wrenches& points) {
+    points_ = points;
+    facets_.clear();
+    queue_.clear();
     const std::optional<std::array<int, kDim + 1>> simplex = FindSimplex();
     if (!simplex) return false;
     inside_.setZero();
@@ -151,17 +152,18 @@ class ExpandingPolytope {
 
  private:
   // Seven points that are far from each other's affine hull.
-  std::optional<std::array<int, kDim + 1>> FindSimplex() const {
+  std::optional<std::array<int, kDim + 1>> FindSimplex() {
     if (points_.cols() <= kDim) return std::nullopt;
     std::array<int, kDim + 1> simplex;
     points_.row(0).maxCoeff(&simplex[0]);
     const Wrench origin = points_.col(simplex[0]);
-    Wrenches rest = points_.colwise() - origin;
+    rest_ = points_.colwise() - origin;
     for (int k = 1; k <= kDim; ++k) {
-      const double spread = rest.colwise().squaredNorm().maxCoeff(&simplex[k]);
+      const double spread = rest_.colwise().squaredNorm().maxCoeff(&simplex[k]);
       if (spread < kFlatTolerance * kFlatTolerance) return std::nullopt;
-      const Wrench direction = rest.col(simplex[k]).normalized();
-      rest -= direction * (direction.transpose() * rest).eval();
+      const Wrench direction = rest_.col(simplex[k]).normalized();
+      share_.noalias() = direction.transpose() * rest_;
+      rest_.noalias() -= direction * share_;
     }
     return simplex;
   }
@@ -206,14 +208,16 @@ class ExpandingPolytope {
   }
 
   void AddFacet(const Facet& facet) {
-    queue_.emplace(facet.offset, static_cast<int>(facets_.size()));
+    queue_.emplace_back(facet.offset, static_cast<int>(facets_.size()));
+    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
     facets_.push_back(facet);
   }
 
   int PopNearest() {
     while (!queue_.empty()) {
-      const int index = queue_.top().second;
-      queue_.pop();
+      std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+      const int index = queue_.back().second;
+      queue_.pop_back();
       if (facets_[index].alive) return index;
     }
     return -1;
@@ -304,16 +308,16 @@ class ExpandingPolytope {
     return facets_[next].visited ? -1 : next;
   }
 
-  const Wrenches& points_;
+  Wrenches points_;
   Wrench inside_;
   std::vector<Facet> facets_;
+  std::vector<std::pair<double, int>> queue_;  // A heap, the nearest on top.
   // Between the calls only to keep their memory.
+  Wrenches rest_;
+  Eigen::RowVectorXd share_;
   Eigen::VectorXd reach_;
   std::vector<int> visible_;
   std::vector<Ridge> horizon_;
-  std::priority_queue<std::pair<double, int>,
-                      std::vector<std::pair<double, int>>, std::greater<>>
-      queue_;
 };
 
 // Runs `measure` on the wrenches, and should rounding break the polytope, on
@@ -321,17 +325,19 @@ class ExpandingPolytope {
 template <class Measure>
 double MeasureHull(const Wrenches& wrenches, double if_flat,
                    const Measure& measure) {
+  thread_local ExpandingPolytope polytope;
+  if (!polytope.Start(wrenches)) return if_flat;
+  if (const std::optional<double> value = measure(polytope)) return *value;
   Wrenches points = wrenches;
   Random random(1);
-  for (double shake = 1e-11; shake < 1e-6; shake *= 100.0) {
-    ExpandingPolytope polytope(points);
-    if (!polytope.Start()) return if_flat;
-    if (const std::optional<double> value = measure(polytope)) return *value;
+  for (double shake = 1e-11; shake < 1e-7; shake *= 100.0) {
     for (int i = 0; i < points.cols(); ++i) {
       for (int k = 0; k < kDim; ++k) {
         points(k, i) = wrenches(k, i) + random.NextUniform(-shake, shake);
       }
     }
+    if (!polytope.Start(points)) return if_flat;
+    if (const std::optional<double> value = measure(polytope)) return *value;
   }
   return if_flat;
 }

@@ -17,7 +17,8 @@ namespace graspdb {
 class Connection {
  public:
   /** @param socket  Open, blocking; stays the caller's.
-   @param stop_fd  Becomes readable when the server stops: idle waiting ends. */
+   @param stop_fd  Becomes readable when the server stops: idle waiting ends.
+   @param limits  Read for each message; outlives the connection. */
   Connection(int socket, int stop_fd, const HttpLimits& limits);
 
   struct Closed {};  ///< The client went away, or was idle for too long.

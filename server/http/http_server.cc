@@ -135,6 +135,56 @@ double CalcMilliseconds(Clock::time_point begin) {
       .count();
 }
 
+/** What a connection is for this thread, which may have no time for it. */
+enum class Welcome { kServed, kTurnedAway, kDropped };
+thread_local Welcome current_welcome = Welcome::kServed;
+
+/** The threads that serve connections and the line of those that wait for one.
+ When it is long the next are told so by a thread of its own, and when that has
+ too much to do, too, they are closed without a word. */
+class ConnectionQueue final : public httplib::TaskQueue {
+ public:
+  explicit ConnectionQueue(size_t threads)
+      : limit_(threads), threads_(threads) {}
+
+  void enqueue(std::function<void()> serve) override {
+    if (!Put(threads_, waiting_, serve, Welcome::kServed) &&
+        !Put(porter_, turned_away_, serve, Welcome::kTurnedAway)) {
+      current_welcome = Welcome::kDropped;
+      serve();
+    }
+  }
+  void shutdown() override {
+    threads_.shutdown();
+    porter_.shutdown();
+  }
+  /** Whether someone waits because all threads are taken. */
+  bool IsCrowded() const { return waiting_ > 0 && busy_ >= limit_; }
+
+ private:
+  bool Put(httplib::ThreadPool& pool, std::atomic<size_t>& waiting,
+           std::function<void()>& serve, Welcome welcome) {
+    constexpr size_t kWaitingPerThread = 4;
+    if (waiting >= kWaitingPerThread * limit_) return false;
+    ++waiting;
+    pool.enqueue([this, &waiting, welcome, serve = std::move(serve)] {
+      ++busy_;
+      --waiting;
+      current_welcome = welcome;
+      serve();
+      --busy_;
+    });
+    return true;
+  }
+
+  const size_t limit_;
+  std::atomic<size_t> waiting_{0};
+  std::atomic<size_t> turned_away_{0};
+  std::atomic<size_t> busy_{0};
+  httplib::ThreadPool threads_;
+  httplib::ThreadPool porter_{1};
+};
+
 }  // namespace
 
 struct HttpServer::Impl : httplib::Server {
@@ -165,6 +215,10 @@ struct HttpServer::Impl : httplib::Server {
   HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
                       HttpRequest& request,
                       const httplib::ContentReader* reader);
+  bool IsCrowded() const {
+    const ConnectionQueue* const now = queue;
+    return now != nullptr && now->IsCrowded();
+  }
   void Log(const std::string& line) const {
     if (options.log) options.log(line);
   }
@@ -183,6 +237,8 @@ struct HttpServer::Impl : httplib::Server {
   bool bound_unserved{false};
   std::stop_source stop;
   const int stop_fd{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  // The library's, while it serves.
+  std::atomic<const ConnectionQueue*> queue{nullptr};
 };
 
 Result<int> HttpServer::Impl::Bind(const std::string& on_host, int on_port) {
@@ -229,7 +285,7 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
     if (cut) shutdown(socket, SHUT_RDWR);
   }
   try {
-    ServeConnection(socket);
+    if (current_welcome != Welcome::kDropped) ServeConnection(socket);
   } catch (const std::exception& exception) {  // Say, for want of memory.
     LogInternal("", exception.what());
     current_exchange = nullptr;
@@ -244,8 +300,16 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
 }
 
 void HttpServer::Impl::ServeConnection(socket_t socket) {
-  Connection connection(socket, stop_fd, options.limits);
+  // Nobody is waited for as long as usual by who has others to serve.
+  constexpr std::chrono::seconds kHurried{1};
+  const bool turned_away = current_welcome == Welcome::kTurnedAway;
+  HttpLimits limits = options.limits;
+  if (turned_away) limits.head_timeout = kHurried;
+  Connection connection(socket, stop_fd, limits);
   for (size_t count = 1;; ++count) {
+    limits.idle_timeout = turned_away || IsCrowded()
+                              ? std::min(kHurried, options.limits.idle_timeout)
+                              : options.limits.idle_timeout;
     auto head = connection.ReadHead();
     if (std::holds_alternative<Connection::Closed>(head)) break;
     Exchange exchange;
@@ -257,16 +321,15 @@ void HttpServer::Impl::ServeConnection(socket_t socket) {
       exchange.head = std::get<MessageHead>(std::move(head));
       const auto& fields = exchange.head.fields;
       const auto wish = fields.find("connection");
-      exchange.close = stop.stop_requested() || exchange.head.http_1_0 ||
-                       exchange.head.chunked ||
+      exchange.close = stop.stop_requested() || turned_away ||
+                       exchange.head.http_1_0 || exchange.head.chunked ||
                        count == options.limits.max_requests_per_connection ||
                        (wish != fields.end() && wish->second == "close");
     }
     ServeExchange(connection, exchange);
-    if (exchange.close) {
-      connection.Linger();
-      break;
-    }
+    if (!exchange.close) continue;
+    if (!connection.AtMessageEnd() || exchange.fault) connection.Linger();
+    break;
   }
 }
 
@@ -330,7 +393,10 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
     out.set_header("Content-Type", response.content_type);
     out.body = std::move(response.body);
   }
-  if (!exchange.connection->AtMessageEnd()) exchange.close = true;
+  // A kept connection makes room for those that wait for a thread.
+  if (!exchange.connection->AtMessageEnd() || IsCrowded()) {
+    exchange.close = true;
+  }
 }
 
 void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
@@ -364,6 +430,12 @@ HttpResponse HttpServer::Impl::Route(Exchange& exchange,
   if (exchange.fault) {
     return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
                        exchange.id);
+  }
+  if (current_welcome == Welcome::kTurnedAway) {
+    return MakeProblem(
+        {ErrorCode::kOverloaded, "More connections wait than can be served.",
+         "wait as long as Retry-After says"},
+        exchange.id);
   }
   if (const auto fault = FindForeignSite(exchange.head, IsLoopback(host))) {
     return MakeProblem(HttpFault::kMalformedRequest, *fault, "", exchange.id);
@@ -446,8 +518,10 @@ HttpServer::HttpServer(Router router, HttpServerOptions options)
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   });
-  server.new_task_queue = [threads = server.options.threads] {
-    return new httplib::ThreadPool(threads);
+  server.new_task_queue = [impl] {
+    auto* queue = new ConnectionQueue(impl->options.threads);
+    impl->queue = queue;
+    return queue;
   };
   server.Get("/", [impl](const httplib::Request&, httplib::Response& out) {
     impl->Answer(nullptr, out);

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
@@ -117,6 +118,14 @@ void RaiseFileLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/** A large block goes back to the system when it is freed. Else the allocator
+ would take ever larger ones, the bodies of uploads, for what is worth keeping,
+ and keep them in the arena of each thread. */
+void ReturnLargeBlocks() {
+  constexpr int kLarge = 4 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+}
+
 int Fail(const Error& error) {
   LogLine("graspdb: " + error.message + " " + error.hint);
   return 2;
@@ -153,6 +162,7 @@ int RunServer(Service& service, const ServerConfig& config) {
   routes.picture_slots =
       std::make_shared<WorkSlots>(1, std::max(0, threads / 8 - 2));
   RaiseFileLimit();
+  ReturnLargeBlocks();
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());

@@ -1,6 +1,7 @@
 """The front of docker/nginx.conf, by Debian's nginx, before a real server: what a
 hostile or slow client may do, and that everyone else does not notice."""
 
+import itertools
 import os
 import pathlib
 import re
@@ -175,26 +176,40 @@ def test_what_is_too_large_is_refused_before_it_is_kept(front, server):
     assert resident_bytes(server.process.pid) - before < 32 << 20
 
 
+def open_slow(front, address, what):
+    """A head or a body that will come a byte at a time, or an answer that is read so."""
+    link = socket.socket()
+    if what == "reading":
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
+    link.bind((address, 0))
+    link.settimeout(5)
+    link.connect(("127.0.0.1", front.port))
+    link.sendall({
+        "head": b"GET /healthz HTTP/1.1\r\nHost: a\r\nX-",
+        "body": b"POST /v1/objects HTTP/1.1\r\nHost: a\r\nContent-Length: 5000\r\n\r\nv",
+        "reading": b"GET /openapi.json HTTP/1.1\r\nHost: a\r\n\r\n"}[what])
+    link.setblocking(False)
+    return link
+
+
 def test_slow_clients_do_not_slow_others(front):
-    """Heads and bodies that come a byte at a time, on many connections from many
-    addresses."""
+    """Heads and bodies that come, and answers that are taken, a byte at a time, on
+    many connections from many addresses."""
     count = SLOW_CLIENTS
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
-    slow = []
-    for i in range(count):
-        link = socket.create_connection(("127.0.0.1", front.port), 5,
-                                        source_address=(f"127.0.1.{i // 10 % 250}", 0))
-        link.sendall(b"GET /healthz HTTP/1.1\r\nHost: a\r\nX-" if i % 2 else
-                     b"POST /v1/objects HTTP/1.1\r\nHost: a\r\nContent-Length: 5000\r\n\r\nv")
-        slow.append(link)
+    slow = [(open_slow(front, f"127.0.1.{i // 10 % 250}", what), what)
+            for i, what in zip(range(count), itertools.cycle(["head", "body", "reading"]))]
     stop = threading.Event()
 
     def drip():
         while not stop.wait(0.5):
-            for link in slow:
+            for link, what in slow:
                 try:
-                    link.send(b"a")
+                    if what == "reading":
+                        link.recv(1)
+                    else:
+                        link.send(b"a")
                 except OSError:
                     pass
 
@@ -210,7 +225,7 @@ def test_slow_clients_do_not_slow_others(front):
     print(f"\n{count} slow clients: health p99 {1e3 * sorted(seconds)[98]:.1f} ms")
     stop.set()
     dripping.join()
-    for link in slow:
+    for link, _ in slow:
         link.close()
 
 

@@ -37,7 +37,7 @@ CONTAINMENT = {
     "linux/*": (["server/*.cc"], None),
     "sys/*": (["server/*"], None),
 }
-POSIX = {"arpa/inet.h", "fcntl.h", "netdb.h", "netinet/in.h", "netinet/tcp.h",
+POSIX = {"arpa/inet.h", "fcntl.h", "malloc.h", "netdb.h", "netinet/in.h", "netinet/tcp.h",
          "poll.h", "pthread.h", "sched.h", "signal.h", "spawn.h", "termios.h",
          "time.h", "unistd.h"}
 

@@ -15,9 +15,12 @@ namespace {
 
 using ::testing::IsEmpty;
 
+using Call = FaultyVfs::Call;
+
 struct Fault {
   const char* name;
   int code;
+  Call call{Call::kChange};
 };
 
 class IoError : public ::testing::TestWithParam<Fault> {};
@@ -76,6 +79,68 @@ INSTANTIATE_TEST_SUITE_P(Faults, IoError,
                                            Fault{"Flush", SQLITE_IOERR_FSYNC},
                                            Fault{"DiskFull", SQLITE_FULL}),
                          [](const auto& fault) { return fault.param.name; });
+
+class IoErrorWhileReading : public ::testing::TestWithParam<Fault> {};
+
+// A database that cannot be opened or read says so, and is whole once it can.
+TEST_P(IoErrorWhileReading, OfAnyCallIsToldAndHeals) {
+  const TempFolder folder;
+  FaultyVfs& vfs = FaultyVfs::Get();
+  vfs.Watch("");
+  const std::string path = folder.File("a.db");
+  std::string id;
+  {
+    auto store = std::move(*Store::Open(path));
+    ASSERT_TRUE(store->InsertCategory(MakeMugCategory()));
+    for (int i = 0; i < 20; ++i) {
+      id = store
+               ->InsertObject(
+                   MakeNewObject(std::to_string(i), ObjectRole::kExample))
+               .value()
+               .id;
+    }
+  }
+  vfs.Watch(folder.path());
+  int told = 0;
+  bool failed = true;
+  for (int k = 1; failed; ++k) {
+    vfs.FailAt(k, GetParam().code, GetParam().call);
+    // Nothing of it is in memory yet.
+    const auto opened = Store::Open(path, Store::OpenMode::kMustExist);
+    const auto expect_told = [&](const auto& result) {
+      if (result) return;
+      ++told;
+      EXPECT_EQ(result.error().code, ErrorCode::kStorage)
+          << "call " << k << ": " << result.error().message;
+    };
+    expect_told(opened);
+    if (opened) {
+      const auto meshes = (*opened)->ReadObjectMeshes(id);
+      expect_told(meshes);
+      expect_told((*opened)->ListObjects({}, {}));
+      expect_told((*opened)->Count());
+    }
+    failed = vfs.has_failed();
+    vfs.FailAt(0, 0);
+    if (opened) {
+      const auto meshes = (*opened)->ReadObjectMeshes(id);
+      EXPECT_TRUE(meshes) << "after call " << k << ": "
+                          << meshes.error().message;
+      EXPECT_THAT((*opened)->Check().value().problems, IsEmpty());
+    }
+    const auto store = Store::Open(path, Store::OpenMode::kMustExist);
+    ASSERT_TRUE(store) << "after call " << k << ": " << store.error().message;
+    EXPECT_EQ((*store)->Count().value().objects, 20);
+  }
+  EXPECT_GE(told, 3);
+  RecordProperty("failed_calls", told);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, IoErrorWhileReading,
+    ::testing::Values(Fault{"Read", SQLITE_IOERR_READ, Call::kRead},
+                      Fault{"Open", SQLITE_CANTOPEN, Call::kOpen}),
+    [](const auto& fault) { return fault.param.name; });
 
 // A database that cannot be made leaves nothing in the way of the next try.
 TEST(IoErrorWhileCreating, IsToldAndHeals) {

@@ -3,6 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -52,8 +54,12 @@ void Acknowledge(int pipe, char kind, const std::string& id) {
 }
 
 // What the store is asked after each kill.
-void CheckAcknowledged(const std::string& path, int pipe, int* acknowledged) {
+void CheckAcknowledged(const std::string& path, int pipe, int* acknowledged,
+                       std::chrono::duration<double>* slowest_open) {
+  const auto begin = std::chrono::steady_clock::now();
   auto store = Store::Open(path);
+  *slowest_open = std::max<std::chrono::duration<double>>(
+      *slowest_open, std::chrono::steady_clock::now() - begin);
   ASSERT_TRUE(store) << store.error().message;
   Acknowledgement message{};
   while (read(pipe, &message, sizeof(message)) == sizeof(message)) {
@@ -75,6 +81,7 @@ TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
   const TempFolder folder;
   Random random(1);
   int acknowledged = 0;
+  std::chrono::duration<double> slowest_open{0.0};
   std::string path;
   for (int round = 0; round < CountRounds(kKills); ++round) {
     if (round % kKills == 0) {
@@ -102,11 +109,13 @@ TEST(KilledProcess, LosesNothingThatItAcknowledgedAndLeavesNothingHalf) {
     int status = 0;
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
-    CheckAcknowledged(path, ends[0], &acknowledged);
+    CheckAcknowledged(path, ends[0], &acknowledged, &slowest_open);
     close(ends[0]);
   }
   EXPECT_GE(acknowledged, CountRounds(kKills) / 2);
   RecordProperty("acknowledged", acknowledged);
+  RecordProperty("slowest_open_milliseconds",
+                 static_cast<int>(1e3 * slowest_open.count()));
 }
 
 // At any moment the file is either absent or whole.

@@ -45,12 +45,18 @@ void Remember(sqlite3_file* file, int64_t begin, int64_t end) {
 int Close(sqlite3_file* file) { return Methods(file).xClose(RealOf(file)); }
 
 int Read(sqlite3_file* file, void* to, int size, sqlite3_int64 at) {
+  if (AsShim(file)->watched != nullptr) {
+    if (const int code = FaultyVfs::Get().Begin(FaultyVfs::Call::kRead)) {
+      return code;
+    }
+  }
   return Methods(file).xRead(RealOf(file), to, size, at);
 }
 
 int Write(sqlite3_file* file, const void* from, int size, sqlite3_int64 at) {
   if (AsShim(file)->watched != nullptr) {
-    if (const int code = FaultyVfs::Get().BeginChange()) return code;
+    if (const int code = FaultyVfs::Get().Begin(FaultyVfs::Call::kChange))
+      return code;
     Remember(file, at, at + size);
   }
   return Methods(file).xWrite(RealOf(file), from, size, at);
@@ -58,7 +64,8 @@ int Write(sqlite3_file* file, const void* from, int size, sqlite3_int64 at) {
 
 int Truncate(sqlite3_file* file, sqlite3_int64 size) {
   if (AsShim(file)->watched != nullptr) {
-    if (const int code = FaultyVfs::Get().BeginChange()) return code;
+    if (const int code = FaultyVfs::Get().Begin(FaultyVfs::Call::kChange))
+      return code;
     sqlite3_int64 before = 0;
     Methods(file).xFileSize(RealOf(file), &before);
     Remember(file, size, before);
@@ -69,7 +76,8 @@ int Truncate(sqlite3_file* file, sqlite3_int64 size) {
 int Sync(sqlite3_file* file, int) {
   FaultyVfs::File* watched = AsShim(file)->watched;
   if (watched == nullptr) return SQLITE_OK;
-  if (const int code = FaultyVfs::Get().BeginChange()) return code;
+  if (const int code = FaultyVfs::Get().Begin(FaultyVfs::Call::kChange))
+    return code;
   watched->durable.clear();
   sqlite3_int64 size = 0;
   const int code = Methods(file).xFileSize(RealOf(file), &size);
@@ -135,6 +143,11 @@ int Open(sqlite3_vfs*, const char* path, sqlite3_file* file, int flags,
   ShimFile* shim = AsShim(file);
   shim->base.pMethods = nullptr;
   shim->watched = path == nullptr ? nullptr : FaultyVfs::Get().Find(path);
+  if (shim->watched != nullptr) {
+    if (const int code = FaultyVfs::Get().Begin(FaultyVfs::Call::kOpen)) {
+      return code;
+    }
+  }
   const int code =
       real_vfs->xOpen(real_vfs, path, shim->real(), flags, flags_out);
   if (code != SQLITE_OK) return code;
@@ -176,14 +189,15 @@ FaultyVfs::File* FaultyVfs::Find(const char* path) {
   return &files_[name];
 }
 
-void FaultyVfs::FailAt(int64_t n, int code) {
+void FaultyVfs::FailAt(int64_t n, int code, Call call) {
   left_ = n;
   code_ = n > 0 ? code : 0;
+  call_ = call;
 }
 
-int FaultyVfs::BeginChange() {
-  if (before_change_) before_change_();
-  if (left_ == 0 || --left_ > 0) return 0;
+int FaultyVfs::Begin(Call call) {
+  if (call == Call::kChange && before_change_) before_change_();
+  if (call != call_ || left_ == 0 || --left_ > 0) return 0;
   return code_;
 }
 

@@ -15,20 +15,27 @@ namespace graspdb {
  process, and SQLite uses it for every file once it was asked for. */
 class FaultyVfs {
  public:
+  enum class Call {
+    kChange,  ///< Write, truncation, flush.
+    kRead,
+    kOpen,
+  };
+
   static FaultyVfs& Get();
 
   /** Forgets all faults and watches the files in the folder: those that SQLite
    opens there from now on. */
   void Watch(const std::string& folder);
 
-  /** Called before each change (write, truncation, flush) of a watched file. */
+  /** Called before each change of a watched file. */
   void set_before_change(std::function<void()> hook) {
     before_change_ = std::move(hook);
   }
 
-  /** The n-th change from now on fails with an SQLite error code; 0: none. */
-  void FailAt(int64_t n, int code);
-  /** Whether that change has come. */
+  /** The n-th such call from now on fails with an SQLite error code; 0: none.
+   */
+  void FailAt(int64_t n, int code, Call call = Call::kChange);
+  /** Whether that call has come. */
   bool has_failed() const { return code_ != 0 && left_ == 0; }
 
   /** Writes to a folder what a power cut may leave of the watched files: all
@@ -43,7 +50,7 @@ class FaultyVfs {
   };
   File* Find(const char* path);
   /** @returns 0, or the code to fail with. */
-  int BeginChange();
+  int Begin(Call call);
 
  private:
   FaultyVfs();
@@ -53,6 +60,7 @@ class FaultyVfs {
   std::function<void()> before_change_;
   int64_t left_{0};
   int code_{0};
+  Call call_{Call::kChange};
 };
 
 }  // namespace graspdb

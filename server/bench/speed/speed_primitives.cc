@@ -112,8 +112,8 @@ class PrimitiveBench {
          Time([&] { return scene.solid.field().Calc(looked_up.Next()); }),
          std::nullopt, std::nullopt});
     Add({"solid with distance field", mesh.num_triangles(),
-         Time([&] { return Solid(mesh).field().cell_size(); }), std::nullopt,
-         std::nullopt});
+         Time([&] { return Solid(mesh).field().cell_size(); }),
+         TimeFieldByCgal(scene.solid, cgal), std::nullopt});
     std::optional<LibraryTiming> sdf;
     if (mesh.num_triangles() <= kMostSdfTriangles) {
       sdf = {"CGAL sdf_values",
@@ -121,6 +121,29 @@ class PrimitiveBench {
     }
     Add({"shape diameters", mesh.num_triangles(),
          Time([&] { return CalcShapeDiameters(mesh)[0]; }), sdf, std::nullopt});
+  }
+
+  // The distance at every node of the field, of which some are asked for.
+  LibraryTiming TimeFieldByCgal(const Solid& solid,
+                                const CgalSurface& cgal) const {
+    constexpr int64_t kStride = 256;
+    const int64_t nodes =
+        solid.field().bytes() / static_cast<int64_t>(sizeof(float)) / kStride;
+    Timing timing = Time([&] {
+      Random random(3);
+      double sum = 0.0;
+      for (int64_t i = 0; i < nodes; ++i) {
+        Eigen::Vector3d p;
+        for (int k = 0; k < 3; ++k) {
+          p[k] = random.NextUniform(solid.mesh_O().box_min()[k] - kAround,
+                                    solid.mesh_O().box_max()[k] + kAround);
+        }
+        sum += cgal.CalcDistance(p);
+      }
+      return sum;
+    });
+    for (double& seconds : timing.samples) seconds *= kStride;
+    return {"CGAL AABB_tree at each node (1 in 256 taken)", std::move(timing)};
   }
 
   void MeasureHand(const SpeedScene& scene) {
@@ -224,6 +247,7 @@ class PrimitiveBench {
       X_HL.push_back(CalcLinkPoses(scene.hand.model(), grasp.configuration.q));
     }
     size_t i = 0;
+    size_t k = 0;
     Add({"contact extraction", std::nullopt, Time([&] {
            const size_t at = i++ % X_HL.size();
            return ExtractContacts(scene.hand,
@@ -231,7 +255,13 @@ class PrimitiveBench {
                                   scene.solid, scene.parameters.contact)
                .size();
          }),
-         std::nullopt, std::nullopt});
+         LibraryTiming{"FCL distance, one point a link", Time([&] {
+                         const size_t at = k++ % X_HL.size();
+                         return CalcDistanceByFcl(
+                             scene.hand, scene.grasps[at].configuration.X_OH,
+                             X_HL[at], scene.solid);
+                       })},
+         std::nullopt});
     for (int count = kFewContacts; count <= kManyContacts; ++count) {
       MeasureEpsilon(
           fmt::format("eps of {} contacts", count),
@@ -301,8 +331,19 @@ class PrimitiveBench {
       labels.push_back(space.Collides(postures.back()));
     }
     Cycle<HandPosture> labelled(postures);
+    Cycle<HandPosture> by_fcl(postures);
     Add({"label of a configuration", std::nullopt,
-         Time([&] { return space.Collides(labelled.Next()); }), std::nullopt,
+         Time([&] { return space.Collides(labelled.Next()); }),
+         LibraryTiming{"FCL collide", Time([&] {
+                         const HandPosture& one = by_fcl.Next();
+                         const HandModel& model = scene.hand.model();
+                         const auto X_HL = CalcLinkPoses(
+                             model, model.CalcCoupledJoints(one.actuators));
+                         return FindCollidingLinkByFcl(scene.hand, one.X_OH,
+                                                       X_HL,
+                                                       scene.solid) >= 0 ||
+                                CollidesWithItselfByFcl(scene.hand, X_HL);
+                       })},
          std::nullopt});
     Add({fmt::format("classifier of {} labels", kTrainingSamples), std::nullopt,
          Time([&] {

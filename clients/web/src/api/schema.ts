@@ -1528,6 +1528,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly getViewerFile: {
@@ -1555,6 +1556,7 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly getHealth: {
@@ -1576,6 +1578,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly getReadiness: {
@@ -1620,6 +1623,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -1642,6 +1646,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly queryGrasps: {
@@ -1701,6 +1706,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postGrasps: {
@@ -1808,6 +1815,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly drawGrasp: {
@@ -1840,6 +1849,7 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly listTransfers: {
@@ -1870,6 +1880,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getTransfer: {
@@ -1894,6 +1906,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly listCategories: {
@@ -1920,6 +1934,8 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postCategory: {
@@ -1987,6 +2003,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2012,6 +2029,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly deleteCategory: {
@@ -2038,6 +2057,7 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 409: components["responses"]["Conflict"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2076,6 +2096,7 @@ export interface operations {
             readonly 409: components["responses"]["Conflict"];
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2160,6 +2181,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postObject: {
@@ -2239,6 +2262,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly deleteObject: {
@@ -2265,6 +2290,7 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 409: components["responses"]["Conflict"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2300,6 +2326,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly listParts: {
@@ -2324,6 +2352,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postSegmentation: {
@@ -2466,6 +2496,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly patchPart: {
@@ -2507,6 +2539,7 @@ export interface operations {
             readonly 413: components["responses"]["TooLarge"];
             readonly 415: components["responses"]["UnsupportedMediaType"];
             readonly 422: components["responses"]["Unusable"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2542,6 +2575,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getGraspSpace: {
@@ -2566,6 +2601,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly deleteGraspSpace: {
@@ -2592,6 +2629,7 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 409: components["responses"]["Conflict"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2619,6 +2657,8 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly postHand: {
@@ -2694,6 +2734,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getUrdf: {
@@ -2718,6 +2760,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getHandMesh: {
@@ -2747,6 +2791,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly listParameters: {
@@ -2768,6 +2814,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly postVerification: {
@@ -2847,6 +2894,8 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly getJob: {
@@ -2873,6 +2922,8 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly cancelJob: {
@@ -2897,6 +2948,7 @@ export interface operations {
             };
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };
@@ -2928,6 +2980,7 @@ export interface operations {
             readonly 400: components["responses"]["BadRequest"];
             readonly 404: components["responses"]["NotFound"];
             readonly 503: components["responses"]["Unavailable"];
+            readonly 507: components["responses"]["StorageFailed"];
         };
     };
     readonly searchByShape: {
@@ -2992,6 +3045,7 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
+            readonly 503: components["responses"]["Unavailable"];
             readonly 507: components["responses"]["StorageFailed"];
         };
     };

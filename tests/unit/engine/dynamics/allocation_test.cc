@@ -1,39 +1,20 @@
-#include <cstddef>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/dynamics/closing_simulation.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/workshop.h"
-
-// The linker sends here what this program's own objects ask for memory, Eigen's
-// vectors included (--wrap in CMakeLists.txt).
-namespace {
-int num_allocations = 0;
-}  // namespace
-
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __wrap_malloc(std::size_t size) {
-  ++num_allocations;
-  return __real_malloc(size);
-}
-void* __real__Znwm(std::size_t size);
-void* __wrap__Znwm(std::size_t size) {
-  ++num_allocations;
-  return __real__Znwm(size);
-}
-}
 
 namespace graspdb {
 namespace {
 
 TEST(Allocations, AreCounted) {
-  num_allocations = 0;
+  const int before = CountAllocations();
   const Eigen::VectorXd vector = Eigen::VectorXd::Ones(100);
   const std::vector<double> other(100, vector.sum());
   EXPECT_EQ(other[0], 100.0);
-  EXPECT_EQ(num_allocations, 2);
+  EXPECT_EQ(CountAllocations() - before, 2);
 }
 
 TEST(Allocations, AreNotMadeByAStepOfAClosing) {
@@ -44,12 +25,12 @@ TEST(Allocations, AreNotMadeByAStepOfAClosing) {
     parameters.time_step = time_step;
     const ClosingSimulation simulation(gripper, box, parameters,
                                        MotorParameters());
-    num_allocations = 0;
+    const int before = CountAllocations();
     const ClosingOutcome outcome = simulation.Run(
         {Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.004, 0, -0.07)},
         Eigen::Vector2d::Zero(), 0.5);
     EXPECT_TRUE(outcome.held);
-    return num_allocations;
+    return CountAllocations() - before;
   };
   // Ten times as many steps, of which there are hundreds.
   const double time_step = HoldParameters().time_step;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <thread>
@@ -76,6 +77,7 @@ TEST(Decoder, AnswersManyMutantsOfEachFormat) {
   std::atomic<std::size_t> next{0};
   std::atomic<int> solids{0};
   std::atomic<int> refused{0};
+  std::atomic<int> slowest{0};  // Milliseconds.
   DecoderOptions options;
   options.helper = GRASPDB_DECODE_HELPER;
   const Decoder decoder(options);
@@ -83,7 +85,14 @@ TEST(Decoder, AnswersManyMutantsOfEachFormat) {
     for (std::size_t i = next++; i < work.size(); i = next++) {
       DecodeRequest request;
       request.file_name = work[i].first;
+      const auto begin = std::chrono::steady_clock::now();
       const auto decoded = decoder.Decode(work[i].second, request);
+      const auto took = std::chrono::ceil<std::chrono::milliseconds>(
+          std::chrono::steady_clock::now() - begin);
+      int before = slowest;
+      const int now = static_cast<int>(took.count());
+      while (before < now && !slowest.compare_exchange_weak(before, now)) {
+      }
       if (decoded) {
         ++solids;
         EXPECT_TRUE(IsClosed(decoded->mesh_O));
@@ -102,6 +111,12 @@ TEST(Decoder, AnswersManyMutantsOfEachFormat) {
   EXPECT_EQ(solids + refused, std::ssize(work));
   EXPECT_GT(solids, mutants / 3);
   EXPECT_GT(refused, mutants);
+  const DecodeCounts counts = decoder.counts();
+  EXPECT_EQ(counts.unstarted, 0);
+  RecordProperty("mutants", static_cast<int>(work.size()));
+  RecordProperty("crashed", static_cast<int>(counts.crashed));
+  RecordProperty("timed_out", static_cast<int>(counts.timed_out));
+  RecordProperty("slowest_milliseconds", slowest);
 }
 
 }  // namespace

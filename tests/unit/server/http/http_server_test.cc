@@ -1,10 +1,5 @@
 #include "server/http/http_server.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <latch>
 #include <memory>
@@ -18,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/random.h"
+#include "tests/support/raw_client.h"
 
 namespace graspdb {
 namespace {
@@ -29,47 +25,6 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-/** A socket connected to the server under test. */
-class Client {
- public:
-  explicit Client(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    connected_ = connect(socket_, reinterpret_cast<sockaddr*>(&address),
-                         sizeof(address)) == 0;
-  }
-  ~Client() { close(socket_); }
-  Client(const Client&) = delete;
-
-  bool connected() const { return connected_; }
-  void Send(const std::string& bytes) {
-    send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  }
-  void EndSending() { shutdown(socket_, SHUT_WR); }
-  /** All that arrives until the server ends the connection. */
-  std::string ReadAll() {
-    std::string all;
-    char bytes[4096];
-    for (ssize_t n; (n = recv(socket_, bytes, sizeof(bytes), 0)) > 0;) {
-      all.append(bytes, static_cast<size_t>(n));
-    }
-    return all;
-  }
-  /** What arrives up to and including the given text. */
-  std::string ReadUntil(const std::string& end) {
-    std::string all;
-    char byte;
-    while (!all.ends_with(end) && recv(socket_, &byte, 1, 0) == 1) all += byte;
-    return all;
-  }
-
- private:
-  int socket_;
-  bool connected_{false};
-};
 
 HttpResponse Text(const std::string& text) {
   HttpResponse response;
@@ -177,7 +132,7 @@ class HttpServerTest : public testing::Test {
 
   /** One exchange on a connection of its own. */
   std::string Exchange(const std::string& bytes) {
-    Client client(port_);
+    RawClient client(port_);
     client.Send(bytes);
     return client.ReadAll();
   }
@@ -228,7 +183,7 @@ TEST_F(HttpServerTest, HeadIsGetWithoutBody) {
 }
 
 TEST_F(HttpServerTest, ABodyInPiecesIsSentChunkByChunk) {
-  Client client(port_);
+  RawClient client(port_);
   for (int i = 0; i < 2; ++i) {  // The connection stays.
     client.Send("GET /pieces HTTP/1.1\r\nHost: localhost\r\n\r\n");
     const std::string answer = client.ReadUntil("\r\n0\r\n\r\n");
@@ -256,7 +211,7 @@ TEST_F(HttpServerTest, HeadOfABodyInPiecesHasNone) {
 
 TEST_F(HttpServerTest, AnEndlessBodyEndsWhenItsReaderGoes) {
   {
-    Client client(port_);
+    RawClient client(port_);
     client.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
     EXPECT_THAT(client.ReadUntil(kOnAndOn), EndsWith(kOnAndOn));
     EXPECT_FALSE(gone_);
@@ -272,7 +227,7 @@ TEST_F(HttpServerTest, NoContentHasNoBody) {
 }
 
 TEST_F(HttpServerTest, KeepsAConnectionForManyRequests) {
-  Client client(port_);
+  RawClient client(port_);
   for (int i = 0; i < 20; ++i) {
     client.Send("GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n");
     EXPECT_THAT(client.ReadUntil("hello x"), EndsWith("hello x"));
@@ -345,17 +300,52 @@ TEST_F(HttpServerTest, AClientThatStallsIsCutOffWhenTheServerHasWaitedEnough) {
   HttpServer server(MakeRouter(), std::move(options));
   const int port = server.Bind("127.0.0.1", 0).value();
   std::thread serving([&] { EXPECT_TRUE(server.Serve()); });
-  Client uploads(port);
+  RawClient uploads(port);
   uploads.Send(
       "POST /upload HTTP/1.1\r\nHost: localhost\r\nContent-Length: "
       "9\r\n\r\nab");
-  Client reads(port);
+  RawClient reads(port);
   reads.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
   reads.ReadUntil(kOnAndOn);
   server.Stop();
   server.CutConnections();
   serving.join();
   EXPECT_TRUE(gone_);
+}
+
+TEST_F(HttpServerTest, AKeptConnectionMakesRoomForWhoWaits) {
+  std::vector<std::unique_ptr<RawClient>> holders;
+  for (int i = 0; i < 7; ++i) {
+    holders.push_back(std::make_unique<RawClient>(port_));
+    holders.back()->Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  const std::string again = "GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  RawClient kept(port_);
+  kept.Send(again);
+  EXPECT_THAT(kept.ReadUntil("hello x"), Not(HasSubstr("Connection: close")));
+  RawClient waiting(port_);
+  waiting.Send(again);
+  std::string answer;
+  do {
+    kept.Send(again);
+    answer = kept.ReadUntil("hello x");
+  } while (!answer.empty() && answer.find("Connection: close") == answer.npos);
+  EXPECT_THAT(answer, EndsWith("hello x"));
+  EXPECT_THAT(waiting.ReadUntil("hello x"), StartsWith("HTTP/1.1 200 OK\r\n"));
+}
+
+TEST_F(HttpServerTest, BeyondTheLineOfThoseThatWaitTheNextIsToldToComeLater) {
+  std::vector<std::unique_ptr<RawClient>> line;
+  for (int i = 0; i < 8 + 4 * 8; ++i) {
+    line.push_back(std::make_unique<RawClient>(port_));
+    line.back()->Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  const std::string answer = Get("/hello/x");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 503 Service Unavailable\r\n"));
+  EXPECT_THAT(answer, HasSubstr("Retry-After: "));
+  EXPECT_THAT(answer, HasSubstr("X-Request-Id: "));
+  EXPECT_THAT(answer, HasSubstr("Connection: close\r\n"));
+  EXPECT_THAT(answer, HasSubstr("More connections wait than can be served"));
 }
 
 TEST_F(HttpServerTest, LargeBodiesBeyondWhatMemoryIsForAreA503) {
@@ -379,7 +369,7 @@ TEST_F(HttpServerTest, LargeBodiesBeyondWhatMemoryIsForAreA503) {
   const int port = server.Bind("127.0.0.1", 0).value();
   std::thread serving([&] { EXPECT_TRUE(server.Serve()); });
   const auto post = [&](const std::string& target, size_t size) {
-    Client client(port);
+    RawClient client(port);
     client.Send("POST " + target +
                 " HTTP/1.1\r\nHost: localhost\r\nConnection: "
                 "close\r\nContent-Length: " +
@@ -428,7 +418,7 @@ TEST_F(HttpServerTest, ReadsAFormWithFileAndFields) {
 }
 
 TEST_F(HttpServerTest, ABodyOverItsLimitIsRefusedUnread) {
-  Client client(port_);
+  RawClient client(port_);
   client.Send(
       "POST /json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 101\r\n"
       "Expect: 100-continue\r\n\r\n");
@@ -439,7 +429,7 @@ TEST_F(HttpServerTest, ABodyOverItsLimitIsRefusedUnread) {
 }
 
 TEST_F(HttpServerTest, ExpectContinueIsAnsweredWhenTheBodyIsWanted) {
-  Client client(port_);
+  RawClient client(port_);
   client.Send(
       "POST /json HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n"
       "Expect: 100-continue\r\nConnection: close\r\n\r\n");
@@ -491,7 +481,7 @@ TEST_F(HttpServerTest, WhatItSendsIsNoPageUnlessARouteSaysSo) {
 }
 
 TEST_F(HttpServerTest, WhoTakesAnAnswerWordByWordIsCutOff) {
-  Client client(port_);
+  RawClient client(port_);
   client.Send("GET /endless HTTP/1.1\r\nHost: localhost\r\n\r\n");
   for (int i = 0; i < 100 && !gone_; ++i) {
     client.ReadUntil(" ");
@@ -568,7 +558,7 @@ TEST_F(HttpServerTest, AnswersOrDropsEveryMutantOfARequest) {
       if (kind == 1) mutant.erase(at, 1 + at % 5);
       if (kind == 2) mutant.insert(at, mutant.substr(at / 2, 8));
     }
-    Client client(port_);
+    RawClient client(port_);
     client.Send(mutant);
     client.EndSending();
     const std::string answer = client.ReadAll();
@@ -579,15 +569,15 @@ TEST_F(HttpServerTest, AnswersOrDropsEveryMutantOfARequest) {
 }
 
 TEST_F(HttpServerTest, StopLetsARequestInFlightEnd) {
-  Client waiting(port_);
+  RawClient waiting(port_);
   waiting.Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  Client idle(port_);
+  RawClient idle(port_);
   idle.Send("GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n");
   idle.ReadUntil("hello x");
   Stop();
   EXPECT_THAT(waiting.ReadAll(), EndsWith("\r\n\r\nstopped"));
   EXPECT_EQ(idle.ReadAll(), "");
-  EXPECT_FALSE(Client(port_).connected());
+  EXPECT_FALSE(RawClient(port_).connected());
 }
 
 TEST_F(HttpServerTest, ASecondServerCannotTakeThePort) {
