@@ -19,6 +19,8 @@ constexpr double kPlaneTolerance = 3e-11;
 // More than the hull of a hundred wrenches has; a polytope that grows on is
 // broken by rounding.
 constexpr size_t kMaxFacets = 200000;
+// Facets whose memory is kept for the next polytope.
+constexpr size_t kMostKept = 16384;
 // What a plane that was spanned by its points may be off at a point of the
 // hull, and what one may be that follows from other planes.
 constexpr double kSpanError = 1e-15;
@@ -90,6 +92,7 @@ class ExpandingPolytope {
   // False when the points do not span six dimensions.
   bool Start(const Wrenches& points) {
     points_ = points;
+    if (facets_.size() > kMostKept) std::vector<Facet>().swap(facets_);
     facets_.clear();
     queue_.clear();
     const std::optional<std::array<int, kDim + 1>> simplex = FindSimplex();
@@ -330,7 +333,7 @@ double MeasureHull(const Wrenches& wrenches, double if_flat,
   if (const std::optional<double> value = measure(polytope)) return *value;
   Wrenches points = wrenches;
   Random random(1);
-  for (double shake = 1e-11; shake < 1e-7; shake *= 100.0) {
+  for (const double shake : {1e-11, 1e-11 * 100.0}) {
     for (int i = 0; i < points.cols(); ++i) {
       for (int k = 0; k < kDim; ++k) {
         points(k, i) = wrenches(k, i) + random.NextUniform(-shake, shake);

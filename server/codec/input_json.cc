@@ -339,7 +339,7 @@ std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
   return labels;
 }
 
-Result<std::vector<std::string>> FaceLabelsFromJson(const std::string& text) {
+Result<std::vector<std::string>> FaceLabelsFromJson(std::string_view text) {
   GRASPDB_TRY(json, ParseJson(text, kFileLimits));
   JsonFields fields(json, "");
   std::vector<std::string> vocabulary;

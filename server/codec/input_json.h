@@ -48,7 +48,7 @@ std::vector<std::string> ReadFaceLabels(JsonFields& fields);
 /** labels.json, {"labels": [...], "faces": {"body": [[0, 1500]], ...}} with
  half-open ranges, or {"face_labels": ["body", ...]}: one label per face.
  @retval kInvalidArgument when ranges overlap or leave a face out. */
-Result<std::vector<std::string>> FaceLabelsFromJson(const std::string& text);
+Result<std::vector<std::string>> FaceLabelsFromJson(std::string_view text);
 
 /** The same hand among the robots of GraspIt!. */
 struct GraspitModel {

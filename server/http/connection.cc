@@ -1,6 +1,8 @@
 #include "server/http/connection.h"
 
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -56,13 +58,14 @@ bool Connection::FillBuffer(Clock::time_point deadline) {
   return count > 0;
 }
 
+bool Connection::AwaitMessage(std::chrono::milliseconds patience) const {
+  return consumed_ < buffer_.size() ||
+         WaitReadable(Clock::now() + patience, true);
+}
+
 std::variant<MessageHead, HeadFault, Connection::Closed>
 Connection::ReadHead() {
   buffer_.erase(0, std::exchange(consumed_, 0));
-  if (buffer_.empty() &&
-      !WaitReadable(Clock::now() + limits_.idle_timeout, true)) {
-    return Closed{};
-  }
   const auto deadline = Clock::now() + limits_.head_timeout;
   size_t searched = 0;
   size_t end = std::string::npos;
@@ -75,9 +78,10 @@ Connection::ReadHead() {
     }
     if (FillBuffer(deadline)) continue;
     if (!timed_out_ || buffer_.empty()) return Closed{};
-    return HeadFault{HttpFault::kRequestTimeout,
-                     fmt::format("The request head took more than {} s.",
-                                 limits_.head_timeout.count())};
+    return HeadFault{
+        HttpFault::kRequestTimeout,
+        fmt::format("The request head took more than {:g} s.",
+                    1e-3 * static_cast<double>(limits_.head_timeout.count()))};
   }
   auto parsed =
       ParseHead(std::string_view(buffer_).substr(0, end + 4), limits_);
@@ -139,16 +143,24 @@ bool Connection::Write(std::string_view bytes) {
   return true;
 }
 
-void Connection::Linger() {
-  constexpr auto kPatience = std::chrono::seconds(1);
+void Connection::Linger(std::chrono::milliseconds patience,
+                        bool still_sending) {
   constexpr size_t kMostDiscarded = 64 << 20;
+  constexpr std::chrono::milliseconds kStep{2};
   shutdown(socket_, SHUT_WR);
-  const auto deadline = Clock::now() + kPatience;
+  const auto deadline = Clock::now() + patience;
   std::array<char, 16384> bytes;
-  for (size_t discarded = 0; discarded < kMostDiscarded;) {
-    const long count = Receive(bytes.data(), bytes.size(), deadline);
-    if (count <= 0) return;
-    discarded += static_cast<size_t>(count);
+  for (size_t discarded = 0;
+       discarded < kMostDiscarded && Clock::now() < deadline;) {
+    int unsent = 0;
+    if (!still_sending && ioctl(socket_, SIOCOUTQ, &unsent) == 0 &&
+        unsent == 0) {
+      return;
+    }
+    if (!WaitReadable(Clock::now() + kStep, false)) continue;
+    const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
+    if (count == 0 || (count < 0 && errno != EINTR)) return;
+    discarded += static_cast<size_t>(std::max<ssize_t>(0, count));
   }
 }
 

@@ -18,12 +18,16 @@ class Connection {
  public:
   /** @param socket  Open, blocking; stays the caller's.
    @param stop_fd  Becomes readable when the server stops: idle waiting ends.
-   @param limits  Read for each message; outlives the connection. */
+   @param limits  Outlives the connection. */
   Connection(int socket, int stop_fd, const HttpLimits& limits);
 
-  struct Closed {};  ///< The client went away, or was idle for too long.
+  /** Waits for the next request to begin.
+   @returns false when it has not, in time or before the server stops. */
+  bool AwaitMessage(std::chrono::milliseconds patience) const;
 
-  /** Waits for the next request and reads its head. */
+  struct Closed {};  ///< The client went away.
+
+  /** Reads the head of a request. */
   std::variant<MessageHead, HeadFault, Closed> ReadHead();
 
   /** Reads bytes of the body after ReadHead(): never past its Content-Length,
@@ -39,9 +43,11 @@ class Connection {
 
   /** Sends all bytes. @returns whether it could. */
   bool Write(std::string_view bytes);
-  /** Ends the sending side, then throws away for a moment what still arrives,
-   so that a client that is still sending gets to see the answer. */
-  void Linger();
+  /** Ends the sending side, then throws away what still arrives, so that the
+   client gets to see the answer: until that has reached it, or the client goes.
+   @param still_sending  The client may not look at the answer before it has
+     sent what it was about to: only its going ends the wait. */
+  void Linger(std::chrono::milliseconds patience, bool still_sending);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -31,6 +31,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr char kUnknownException[] = "unknown exception";
+/** Instead of a route, in the metrics. */
+constexpr char kTurnedAwayRoute[] = "turned away";
+
 /** One request on its way through the server. */
 struct Exchange {
   Connection* connection{nullptr};
@@ -145,44 +149,47 @@ thread_local Welcome current_welcome = Welcome::kServed;
 class ConnectionQueue final : public httplib::TaskQueue {
  public:
   explicit ConnectionQueue(size_t threads)
-      : limit_(threads), threads_(threads) {}
+      : served_{threads}, turned_away_{1} {}
 
   void enqueue(std::function<void()> serve) override {
-    if (!Put(threads_, waiting_, serve, Welcome::kServed) &&
-        !Put(porter_, turned_away_, serve, Welcome::kTurnedAway)) {
+    const size_t line = kWaitingPerThread * served_.threads;
+    if (!Put(served_, line, Welcome::kServed, serve) &&
+        !Put(turned_away_, line, Welcome::kTurnedAway, serve)) {
       current_welcome = Welcome::kDropped;
       serve();
     }
   }
   void shutdown() override {
-    threads_.shutdown();
-    porter_.shutdown();
+    served_.pool.shutdown();
+    turned_away_.pool.shutdown();
   }
   /** Whether someone waits because all threads are taken. */
-  bool IsCrowded() const { return waiting_ > 0 && busy_ >= limit_; }
+  bool IsCrowded() const { return served_.inside > served_.threads; }
 
  private:
-  bool Put(httplib::ThreadPool& pool, std::atomic<size_t>& waiting,
-           std::function<void()>& serve, Welcome welcome) {
-    constexpr size_t kWaitingPerThread = 4;
-    if (waiting >= kWaitingPerThread * limit_) return false;
-    ++waiting;
-    pool.enqueue([this, &waiting, welcome, serve = std::move(serve)] {
-      ++busy_;
-      --waiting;
+  static constexpr size_t kWaitingPerThread = 4;
+
+  struct Room {
+    explicit Room(size_t count) : threads(count), pool(count) {}
+    const size_t threads;
+    std::atomic<size_t> inside{0};  // With a thread, or waiting for one.
+    httplib::ThreadPool pool;
+  };
+
+  static bool Put(Room& room, size_t line, Welcome welcome,
+                  std::function<void()>& serve) {
+    if (room.inside >= room.threads + line) return false;
+    ++room.inside;
+    room.pool.enqueue([&room, welcome, serve = std::move(serve)] {
       current_welcome = welcome;
       serve();
-      --busy_;
+      --room.inside;
     });
     return true;
   }
 
-  const size_t limit_;
-  std::atomic<size_t> waiting_{0};
-  std::atomic<size_t> turned_away_{0};
-  std::atomic<size_t> busy_{0};
-  httplib::ThreadPool threads_;
-  httplib::ThreadPool porter_{1};
+  Room served_;
+  Room turned_away_;
 };
 
 }  // namespace
@@ -207,6 +214,8 @@ struct HttpServer::Impl : httplib::Server {
   void RequestStop();
   void CutConnections();
   void ServeConnection(socket_t socket);
+  bool AwaitMessage(const Connection& connection,
+                    std::chrono::milliseconds patience) const;
   void ServeExchange(Connection& connection, Exchange& exchange);
   void Answer(const httplib::ContentReader* reader, httplib::Response& out);
   void Stream(HttpResponse response, Exchange& exchange,
@@ -285,9 +294,16 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
     if (cut) shutdown(socket, SHUT_RDWR);
   }
   try {
-    if (current_welcome != Welcome::kDropped) ServeConnection(socket);
+    if (current_welcome != Welcome::kDropped) {
+      ServeConnection(socket);
+    } else if (options.metrics) {
+      options.metrics->AddDropped();
+    }
   } catch (const std::exception& exception) {  // Say, for want of memory.
     LogInternal("", exception.what());
+    current_exchange = nullptr;
+  } catch (...) {
+    LogInternal("", kUnknownException);
     current_exchange = nullptr;
   }
   {
@@ -300,16 +316,15 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
 }
 
 void HttpServer::Impl::ServeConnection(socket_t socket) {
-  // Nobody is waited for as long as usual by who has others to serve.
-  constexpr std::chrono::seconds kHurried{1};
+  // Who has others to turn away waits for nobody.
+  constexpr std::chrono::milliseconds kMoment{100};
+  constexpr std::chrono::milliseconds kPatience{1000};
   const bool turned_away = current_welcome == Welcome::kTurnedAway;
   HttpLimits limits = options.limits;
-  if (turned_away) limits.head_timeout = kHurried;
+  if (turned_away) limits.idle_timeout = limits.head_timeout = kMoment;
   Connection connection(socket, stop_fd, limits);
   for (size_t count = 1;; ++count) {
-    limits.idle_timeout = turned_away || IsCrowded()
-                              ? std::min(kHurried, options.limits.idle_timeout)
-                              : options.limits.idle_timeout;
+    if (!AwaitMessage(connection, limits.idle_timeout)) break;
     auto head = connection.ReadHead();
     if (std::holds_alternative<Connection::Closed>(head)) break;
     Exchange exchange;
@@ -327,10 +342,23 @@ void HttpServer::Impl::ServeConnection(socket_t socket) {
                        (wish != fields.end() && wish->second == "close");
     }
     ServeExchange(connection, exchange);
-    if (!exchange.close) continue;
-    if (!connection.AtMessageEnd() || exchange.fault) connection.Linger();
-    break;
+    if (exchange.close) {
+      connection.Linger(turned_away ? kMoment : kPatience,
+                        exchange.fault || !connection.AtMessageEnd());
+      break;
+    }
   }
+}
+
+bool HttpServer::Impl::AwaitMessage(const Connection& connection,
+                                    std::chrono::milliseconds patience) const {
+  // While others wait for a thread, a client is idle after a second.
+  constexpr std::chrono::milliseconds kStep{1000};
+  for (; patience > kStep; patience -= kStep) {
+    if (connection.AwaitMessage(kStep)) return true;
+    if (IsCrowded() || stop.stop_requested()) return false;
+  }
+  return connection.AwaitMessage(patience);
 }
 
 void HttpServer::Impl::ServeExchange(Connection& connection,
@@ -407,8 +435,12 @@ void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
     try {
       piece = next();
     } catch (const std::exception& exception) {
+      // The client sees that the answer is cut short.
       LogInternal(exchange.id, exception.what());
-      return false;  // The client sees that the answer is cut short.
+      return false;
+    } catch (...) {
+      LogInternal(exchange.id, kUnknownException);
+      return false;
     }
     if (!piece) {
       sink.done();
@@ -430,12 +462,6 @@ HttpResponse HttpServer::Impl::Route(Exchange& exchange,
   if (exchange.fault) {
     return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
                        exchange.id);
-  }
-  if (current_welcome == Welcome::kTurnedAway) {
-    return MakeProblem(
-        {ErrorCode::kOverloaded, "More connections wait than can be served.",
-         "wait as long as Retry-After says"},
-        exchange.id);
   }
   if (const auto fault = FindForeignSite(exchange.head, IsLoopback(host))) {
     return MakeProblem(HttpFault::kMalformedRequest, *fault, "", exchange.id);
@@ -470,6 +496,13 @@ HttpResponse HttpServer::Impl::Route(Exchange& exchange,
     return response;
   }
   exchange.pattern = match.route->pattern;
+  if (current_welcome == Welcome::kTurnedAway && !match.route->vital) {
+    exchange.pattern = kTurnedAwayRoute;
+    return MakeProblem(
+        {ErrorCode::kOverloaded, "More connections wait than can be served.",
+         "wait as long as Retry-After says"},
+        exchange.id);
+  }
   request.path_parameters = std::move(match.path_parameters);
   request.query = target->query;
   request.headers = exchange.head.fields;
@@ -481,7 +514,7 @@ HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
                                       const graspdb::Route& route,
                                       HttpRequest& request,
                                       const httplib::ContentReader* reader) {
-  Error error{ErrorCode::kInternal, "unknown exception", ""};
+  Error error{ErrorCode::kInternal, kUnknownException, ""};
   try {
     auto refusal = ReadRequestBody(
         exchange.head, route.body, options.limits, budget,

@@ -18,10 +18,10 @@ struct HttpLimits {
    least two of the largest. */
   size_t max_held_bytes{128 << 20};
   size_t max_form_parts{32};
-  size_t max_form_head_bytes{8192};      ///< The header fields of a form part.
-  size_t max_form_field_bytes{4096};     ///< A form part without a file.
-  std::chrono::seconds idle_timeout{5};  ///< Between two requests.
-  std::chrono::seconds head_timeout{10};
+  size_t max_form_head_bytes{8192};   ///< The header fields of a form part.
+  size_t max_form_field_bytes{4096};  ///< A form part without a file.
+  std::chrono::milliseconds idle_timeout{5000};  ///< Between two requests.
+  std::chrono::milliseconds head_timeout{10'000};
   std::chrono::seconds body_timeout{120};
   std::chrono::seconds write_timeout{30};  ///< Without a byte getting away.
   /** A client that takes less of an answer, after write_timeout, is cut off. */

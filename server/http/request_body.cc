@@ -1,5 +1,6 @@
 #include "server/http/request_body.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -50,7 +51,8 @@ HttpResponse MakeTooLarge(size_t limit, const std::string& id) {
       id);
 }
 
-std::optional<HttpResponse> ReadBytes(size_t limit,
+// @param expected  The body's size when it is known, or 0.
+std::optional<HttpResponse> ReadBytes(size_t limit, size_t expected,
                                       const std::shared_ptr<HeldBody>& held,
                                       const BodySource& source,
                                       HttpRequest& request) {
@@ -61,6 +63,8 @@ std::optional<HttpResponse> ReadBytes(size_t limit,
     too_large = whole > limit;
     too_many = !held->Grow(whole);
     if (too_large || too_many) return false;
+    // Taken from the system as it is filled, and never copied.
+    if (request.body.empty()) request.body.reserve(expected);
     request.body += bytes;
     return true;
   });
@@ -90,7 +94,7 @@ std::optional<HttpResponse> ReadForm(const HttpLimits& limits,
   auto parts =
       ParseMultipart(request.body, request.FindHeader("content-type"), limits);
   if (!parts) return MakeProblem(parts.error(), request.id);
-  request.body.clear();
+  std::string().swap(request.body);  // clear() would keep its memory.
   for (FormPart& part : *parts) {
     if (!part.filename.empty()) {
       request.files.push_back(std::move(part));
@@ -119,9 +123,11 @@ std::optional<HttpResponse> ReadRequestBody(
   if (head.content_length > limit) return MakeTooLarge(limit, request.id);
   const auto held = std::make_shared<HeldBody>(budget);
   request.held = held;
-  // Taken from the system as it is filled, and never copied.
-  request.body.reserve(head.content_length);
-  if (auto refusal = ReadBytes(limit, held, source, request)) return refusal;
+  if (auto refusal =
+          ReadBytes(limit, std::min(head.content_length, limits.max_held_bytes),
+                    held, source, request)) {
+    return refusal;
+  }
   const bool form = FindEssence(request) == "multipart/form-data";
   return upload && form ? ReadForm(limits, request) : std::nullopt;
 }

@@ -47,11 +47,19 @@ void RequestMetrics::End(const RequestRecord& record) {
   }
 }
 
+void RequestMetrics::AddDropped() {
+  const std::lock_guard lock(mutex_);
+  ++dropped_;
+}
+
 std::string RequestMetrics::Write() const {
   const std::lock_guard lock(mutex_);
   std::string text = WriteMetricHead("graspdb_http_requests_in_flight", "gauge",
                                      "Requests being answered.");
   text += fmt::format("graspdb_http_requests_in_flight {}\n", in_flight_);
+  text += WriteMetricHead("graspdb_http_connections_dropped_total", "counter",
+                          "Connections closed unread: too many at once.");
+  text += fmt::format("graspdb_http_connections_dropped_total {}\n", dropped_);
   text += WriteMetricHead("graspdb_http_requests_total", "counter",
                           "Requests answered.");
   for (const auto& [key, count] : requests_) {

@@ -28,6 +28,8 @@ class RequestMetrics {
 
   void Begin();
   void End(const RequestRecord& record);
+  /** A connection was closed unread, for want of time even to refuse it. */
+  void AddDropped();
   /** In Prometheus' text format, sorted by label. */
   std::string Write() const;
 
@@ -40,6 +42,7 @@ class RequestMetrics {
 
   mutable std::mutex mutex_;
   int in_flight_{0};
+  uint64_t dropped_{0};
   // By method, pattern and status.
   std::map<std::tuple<std::string, std::string, int>, uint64_t> requests_;
   std::map<std::pair<std::string, std::string>, Histogram> seconds_;

@@ -25,6 +25,8 @@ struct Route {
   std::string pattern;  ///< E.g. "/v1/grasps/{id}.png".
   BodyKind body{BodyKind::kNone};
   HttpHandler handler;
+  /** Answered also when there is no time for others. */
+  bool vital{false};
 };
 
 /** Which route answers a request. */

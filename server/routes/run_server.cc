@@ -124,6 +124,7 @@ void RaiseFileLimit() {
 void ReturnLargeBlocks() {
   constexpr int kLarge = 4 << 20;
   mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, 2 * kLarge);
 }
 
 int Fail(const Error& error) {

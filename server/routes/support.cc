@@ -48,12 +48,12 @@ std::string CalcRequestSha256(const HttpRequest& request) {
 }
 
 // The content of the form's file of that name, or nothing.
-std::optional<std::string> FindFile(const HttpRequest& request,
-                                    const std::string& name) {
+const std::string* FindFile(const HttpRequest& request,
+                            const std::string& name) {
   for (const FormPart& file : request.files) {
-    if (file.name == name) return file.content;
+    if (file.name == name) return &file.content;
   }
-  return std::nullopt;
+  return nullptr;
 }
 
 }  // namespace
@@ -166,8 +166,8 @@ Result<std::shared_ptr<void>> TakeToParse(size_t bytes, WorkSlots& slots,
 
 Result<std::vector<std::string>> ReadLabels(const HttpRequest& request,
                                             WorkSlots& slots) {
-  const auto file = FindFile(request, "labels");
-  if (!file) return std::vector<std::string>();
+  const std::string* const file = FindFile(request, "labels");
+  if (file == nullptr) return std::vector<std::string>();
   const auto slot = TakeToParse(file->size(), slots, request);
   if (!slot) return slot.error();
   return FaceLabelsFromJson(*file);

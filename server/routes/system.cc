@@ -44,7 +44,8 @@ Result<HttpResponse> GetParameters(const HttpRequest& request) {
 }  // namespace
 
 void AddSystemRoutes(Router& router, Service& service) {
-  router.Add({"GET", "/healthz", BodyKind::kNone, GetHealth});
+  router.Add(
+      {"GET", "/healthz", BodyKind::kNone, GetHealth, /* vital = */ true});
   router.Add({"GET", "/readyz", BodyKind::kNone,
               [&service](const HttpRequest& request) {
                 return GetReady(service, request);

@@ -22,13 +22,13 @@ import pytest
 import requests
 
 import meshes
-from contract_client import ROOT
+from contract_client import ROOT, patient
 from live_server import LiveServer
 
 CLIENTS = 64
 SECONDS = float(os.environ.get("GRASPDB_LOAD_SECONDS", "8"))
 QUEUE = 20  # Jobs that may wait.
-FEW_THREADS = CLIENTS // 4
+FEW_THREADS = CLIENTS // 8
 OVERLOAD_SECONDS = max(5.0, SECONDS / 10)
 THREADS = 128
 STREAMS = 500 if SECONDS > 60 else 80
@@ -207,33 +207,45 @@ def test_sixty_four_clients_get_what_they_ask_for_or_are_told_to_wait(busy):
     assert requests.get(busy.url + "/healthz", timeout=5).status_code == 200
 
 
-def test_four_times_what_can_be_served_is_told_to_wait_and_soon_forgotten(
+def count_turned_away(url):
+    metrics = requests.get(url + "/metrics", timeout=20).text
+    dropped = re.search(r"^graspdb_http_connections_dropped_total (\d+)$", metrics, re.M)
+    turned_away = re.findall(r'^graspdb_http_requests_total{.*route="turned away".*} (\d+)$',
+                             metrics, re.M)
+    return sum(map(int, turned_away)), int(dropped[1])
+
+
+def test_far_more_than_can_be_served_is_told_to_wait_and_soon_forgotten(
         binary, copy_database, tmp_path):
-    """Four clients for each thread that serves them, and none of them waits."""
+    """Eight clients for each thread that serves them, and none of them waits."""
     database = tmp_path / "overload.db"
     copy_database(database)
     live = LiveServer(binary, database, tmp_path, "--max-queued-jobs", "4",
                       "--http-threads", str(FEW_THREADS))
-    end = time.monotonic() + OVERLOAD_SECONDS
+    end = time.monotonic() + patient(OVERLOAD_SECONDS)
     clients = [Client(i, live.url, end, pause=0) for i in range(CLIENTS)]
     for client in clients:
         client.start()
-    time.sleep(OVERLOAD_SECONDS / 3)
+    time.sleep(patient(OVERLOAD_SECONDS) / 3)
     rows = watch(live.process.pid, end)
     answers = join(clients)
     begin = time.monotonic()
     box = meshes.box_obj(0.04, 0.05, 0.06)
     while not (requests.get(live.url + "/v1/grasps?category=mug&limit=20", timeout=60).ok
                and requests.post(live.url + "/v1/objects?format=obj", data=box, timeout=60).ok):
+        assert time.monotonic() - begin < patient(60)
         time.sleep(0.05)
     recovered = time.monotonic() - begin
     least = min(client.answers["query", 200] for client in clients)
+    turned_away, dropped = count_turned_away(live.url)
     print(f"\n{CLIENTS} clients on {FEW_THREADS} threads for {OVERLOAD_SECONDS:.0f} s: "
-          f"{dict(answers)}, at least {least} queries each; resident "
+          f"{dict(answers)}, at least {least} queries each; {turned_away} turned away, "
+          f"{dropped} dropped; resident "
           f"{rows[:, 1].min() / (1 << 20):.0f} to {rows[:, 1].max() / (1 << 20):.0f} MiB; "
           f"answers as before {recovered:.2f} s after")
     # Nobody was left out.
     assert least > 0
+    assert turned_away > 0 and dropped == 0
     assert answers["/v1/grasps", 503] > 0
     assert rows[-1, 1] - rows[0, 1] < MOST_GROWTH
     assert live.stop() == 0, live.log()
@@ -254,7 +266,7 @@ def test_learning_keeps_nobody_waiting_and_says_how_long_it_takes(busy):
     assert 0 < job["progress"] < 1 and job["eta_s"] > 0
     beside = time_queries(busy, QUERIES), time_queries(busy, QUERIES, "/healthz")
     later = requests.get(url, timeout=20).json()
-    assert later["state"] == "running" and later["progress"] >= job["progress"]
+    assert later["state"] == "succeeded" or later["progress"] >= job["progress"]
     requests.delete(url, timeout=20)
     print(f"\nalone: queries p99 {quantile_ms(alone[0], .99)}, health p99 "
           f"{quantile_ms(alone[1], .99)}; while it learns: queries p99 "

@@ -1382,6 +1382,8 @@ export interface components {
         /** @description The request arrived too slowly. */
         readonly RequestTimeout: {
             headers: {
+                /** @description When to ask again. */
+                readonly "Retry-After"?: number;
                 readonly [name: string]: unknown;
             };
             content: {
@@ -1438,6 +1440,8 @@ export interface components {
         /** @description The database cannot be written or read; nothing was changed. */
         readonly StorageFailed: {
             headers: {
+                /** @description When to ask again. */
+                readonly "Retry-After"?: number;
                 readonly [name: string]: unknown;
             };
             content: {
@@ -1578,7 +1582,6 @@ export interface operations {
                 };
             };
             readonly 400: components["responses"]["BadRequest"];
-            readonly 503: components["responses"]["Unavailable"];
         };
     };
     readonly getReadiness: {

@@ -20,6 +20,8 @@ namespace {
 
 // What the body of /endless is made of.
 constexpr char kOnAndOn[] = "on and on and ";
+// More than sockets hold.
+constexpr int kLarge = 20'000'000;
 
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -46,6 +48,7 @@ class HttpServerTest : public testing::Test {
     options.limits.body_timeout = std::chrono::seconds(1);
     options.limits.write_timeout = std::chrono::seconds(2);
     options.limits.least_bytes_per_second = 1 << 20;
+    options.metrics = metrics_;
     options.log = [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
       log_ += line + "\n";
@@ -106,6 +109,19 @@ class HttpServerTest : public testing::Test {
                       };
                   return response;
                 }});
+    router.Add({"GET", "/broken", BodyKind::kNone, [](const HttpRequest&) {
+                  HttpResponse response = Text("");
+                  response.next_piece = []() -> std::optional<std::string> {
+                    throw 7;
+                  };
+                  return response;
+                }});
+    router.Add({"GET", "/large", BodyKind::kNone, [](const HttpRequest&) {
+                  return Text(std::string(kLarge, 'a'));
+                }});
+    router.Add({"GET", "/alive", BodyKind::kNone,
+                [](const HttpRequest&) { return Text("yes"); },
+                /* vital = */ true});
     router.Add({"GET", "/fail", BodyKind::kNone,
                 [](const HttpRequest&) -> Result<HttpResponse> {
                   return Error{ErrorCode::kConflict, "No.", "Do this."};
@@ -121,13 +137,25 @@ class HttpServerTest : public testing::Test {
                   return response;
                 }});
     router.Add(
-        {"GET", "/wait", BodyKind::kNone, [](const HttpRequest& request) {
+        {"GET", "/wait", BodyKind::kNone, [this](const HttpRequest& request) {
+           ++num_waiting_;
            while (!request.stop.stop_requested()) {
              std::this_thread::sleep_for(std::chrono::milliseconds(5));
            }
            return Text("stopped");
          }});
     return router;
+  }
+
+  /** Clients that wait until the server stops, a thread for each. */
+  std::vector<std::unique_ptr<RawClient>> TakeThreads(int count) {
+    std::vector<std::unique_ptr<RawClient>> clients;
+    for (int i = 0; i < count; ++i) {
+      clients.push_back(std::make_unique<RawClient>(port_));
+      clients.back()->Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    }
+    while (num_waiting_ < count) std::this_thread::yield();
+    return clients;
   }
 
   /** One exchange on a connection of its own. */
@@ -154,9 +182,12 @@ class HttpServerTest : public testing::Test {
   }
 
   int port_{0};
+  const std::shared_ptr<RequestMetrics> metrics_ =
+      std::make_shared<RequestMetrics>();
   std::unique_ptr<HttpServer> server_;
   std::thread thread_;
   std::atomic<bool> gone_{false};  // Whoever read /endless.
+  std::atomic<int> num_waiting_{0};
   std::mutex mutex_;
   std::string log_;
 };
@@ -192,6 +223,14 @@ TEST_F(HttpServerTest, ABodyInPiecesIsSentChunkByChunk) {
                                  "\r\n8\r\npiece 1\n\r\n0\r\n\r\n"));
   }
   EXPECT_THAT(log(), HasSubstr("target=/pieces status=200 in=0 out=24"));
+}
+
+TEST_F(HttpServerTest, ABodyInPiecesThatFailsIsCutShort) {
+  const std::string answer = Get("/broken");
+  EXPECT_THAT(answer, HasSubstr("Transfer-Encoding: chunked\r\n"));
+  EXPECT_THAT(answer, Not(EndsWith("0\r\n\r\n")));
+  EXPECT_THAT(log(), HasSubstr("event=internal"));
+  EXPECT_THAT(Get("/hello/x"), EndsWith("hello x"));
 }
 
 TEST_F(HttpServerTest, ABodyInPiecesEndsWithTheConnectionInHttp10) {
@@ -313,32 +352,41 @@ TEST_F(HttpServerTest, AClientThatStallsIsCutOffWhenTheServerHasWaitedEnough) {
   EXPECT_TRUE(gone_);
 }
 
+const char kHello[] = "GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n";
+
 TEST_F(HttpServerTest, AKeptConnectionMakesRoomForWhoWaits) {
-  std::vector<std::unique_ptr<RawClient>> holders;
-  for (int i = 0; i < 7; ++i) {
-    holders.push_back(std::make_unique<RawClient>(port_));
-    holders.back()->Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  }
-  const std::string again = "GET /hello/x HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const auto others = TakeThreads(7);
   RawClient kept(port_);
-  kept.Send(again);
+  kept.Send(kHello);
   EXPECT_THAT(kept.ReadUntil("hello x"), Not(HasSubstr("Connection: close")));
   RawClient waiting(port_);
-  waiting.Send(again);
+  waiting.Send(kHello);
   std::string answer;
   do {
-    kept.Send(again);
+    kept.Send(kHello);
     answer = kept.ReadUntil("hello x");
   } while (!answer.empty() && answer.find("Connection: close") == answer.npos);
   EXPECT_THAT(answer, EndsWith("hello x"));
   EXPECT_THAT(waiting.ReadUntil("hello x"), StartsWith("HTTP/1.1 200 OK\r\n"));
 }
 
+TEST_F(HttpServerTest, AnIdleConnectionMakesRoomForWhoWaits) {
+  const auto others = TakeThreads(7);
+  RawClient idle(port_);
+  idle.Send(kHello);
+  idle.ReadUntil("hello x");
+  RawClient waiting(port_);
+  waiting.Send(kHello);
+  EXPECT_THAT(waiting.ReadUntil("hello x"), StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_EQ(idle.ReadAll(), "");
+}
+
 TEST_F(HttpServerTest, BeyondTheLineOfThoseThatWaitTheNextIsToldToComeLater) {
+  const auto others = TakeThreads(8);
   std::vector<std::unique_ptr<RawClient>> line;
-  for (int i = 0; i < 8 + 4 * 8; ++i) {
+  for (int i = 0; i < 4 * 8; ++i) {
     line.push_back(std::make_unique<RawClient>(port_));
-    line.back()->Send("GET /wait HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    line.back()->Send(kHello);
   }
   const std::string answer = Get("/hello/x");
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 503 Service Unavailable\r\n"));
@@ -346,6 +394,31 @@ TEST_F(HttpServerTest, BeyondTheLineOfThoseThatWaitTheNextIsToldToComeLater) {
   EXPECT_THAT(answer, HasSubstr("X-Request-Id: "));
   EXPECT_THAT(answer, HasSubstr("Connection: close\r\n"));
   EXPECT_THAT(answer, HasSubstr("More connections wait than can be served"));
+  // Whether it lives is told all the same.
+  EXPECT_THAT(Get("/alive"), StartsWith("HTTP/1.1 200 OK\r\n"));
+  // And when there is no time for that either, nothing is, soon.
+  std::vector<std::unique_ptr<RawClient>> crowd;
+  while (metrics_->Write().find("connections_dropped_total 0\n") !=
+         std::string::npos) {
+    crowd.push_back(std::make_unique<RawClient>(port_));
+    ASSERT_LT(crowd.size(), 1000u);
+  }
+  EXPECT_GT(crowd.size(), 4 * 8u);
+  // Nobody is forgotten in the end.
+  Stop();
+  for (const auto& client : line) {
+    EXPECT_THAT(client->ReadUntil("hello x"), StartsWith("HTTP/1.1 200 OK"));
+  }
+}
+
+TEST_F(HttpServerTest, AClientThatHasMoreToSayGetsAllOfTheLastAnswer) {
+  RawClient client(port_);
+  client.Send(
+      "GET /large HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n" +
+      std::string(kHello));
+  const std::string answer = client.ReadAll();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_GT(answer.size(), size_t{kLarge});
 }
 
 TEST_F(HttpServerTest, LargeBodiesBeyondWhatMemoryIsForAreA503) {
