@@ -11,7 +11,9 @@
 #include <cstdio>
 #include <fstream>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -167,6 +169,9 @@ int RunServer(Service& service, const ServerConfig& config) {
   HttpServer server(MakeRouter(service, routes), std::move(options));
   const auto port = server.Bind(config.host, config.port);
   if (!port) return Fail(port.error());
+  // From here on, before anyone can know the port, a signal ends it in good
+  // order.
+  std::optional<StopOnSignal> stop(std::in_place, server, drain_timeout);
   if (!config.port_file.empty() && !WritePortFile(config.port_file, *port)) {
     return Fail({ErrorCode::kStorage,
                  fmt::format("Cannot write {}.", config.port_file),
@@ -176,15 +181,12 @@ int RunServer(Service& service, const ServerConfig& config) {
       !started) {
     return Fail(started.error());
   }
-  Result<void> served;
-  {
-    const StopOnSignal stop(server, drain_timeout);
-    const bool bare_ipv6 = config.host.find(':') != std::string::npos;
-    fmt::print("graspdb listening on http://{}:{}\n",
-               bare_ipv6 ? "[" + config.host + "]" : config.host, *port);
-    std::fflush(stdout);
-    served = server.Serve();
-  }
+  const bool bare_ipv6 = config.host.find(':') != std::string::npos;
+  fmt::print("graspdb listening on http://{}:{}\n",
+             bare_ipv6 ? "[" + config.host + "]" : config.host, *port);
+  std::fflush(stdout);
+  const Result<void> served = server.Serve();
+  stop.reset();
   service.StopWorkers();
   return served ? 0 : Fail(served.error());
 }

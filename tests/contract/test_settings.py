@@ -60,3 +60,9 @@ def test_a_flag_outdoes_the_environment_and_that_the_file(binary, database, tmp_
     assert settings["max-backups"] == "3"
     assert settings["http-threads"] == "20"
     assert settings["max-queued-jobs"] == "100"
+
+
+def test_a_signal_as_soon_as_the_port_is_known_ends_it_in_good_order(binary, database, tmp_path):
+    for _ in range(10):
+        live = LiveServer(binary, database, tmp_path)
+        assert live.stop() == 0, live.log()
