@@ -6,6 +6,8 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "engine/base/utf8.h"
+
 namespace graspdb {
 namespace {
 
@@ -93,6 +95,10 @@ Result<void> AddLinks(const urdf::ModelInterface& model,
 }  // namespace
 
 Result<HandTree> ReadUrdf(const std::string& urdf) {
+  // tinyxml 2.6 reads past the end of what is not.
+  if (!IsUtf8(urdf)) {
+    return MakeHandError("the URDF is not UTF-8 text", "save it as UTF-8");
+  }
   // urdfdom 3.0 hands the text that it complains of to printf() as a format.
   console_bridge::noOutputHandler();
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf);

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/utf8.h"
 #include "server/http/multipart.h"
 #include "server/http/problem.h"
-#include "server/http/target.h"
 
 namespace graspdb {
 namespace {

@@ -31,7 +31,4 @@ std::string EncodePercent(std::string_view text);
  @retval kInvalidArgument as for DecodePercent. */
 Result<Target> ParseTarget(std::string_view target);
 
-/** True when `text` is well-formed UTF-8 (RFC 3629). */
-bool IsUtf8(std::string_view text);
-
 }  // namespace graspdb

@@ -1,5 +1,5 @@
-// Runs a fuzz target on its seeds, on the inputs of a folder (each was a
-// finding once) and on mutants of all of them, the same ones every time.
+// Runs a fuzz target on its seeds, on the inputs of a folder (what fuzzing has
+// gathered and found) and on mutants of all of them, the same ones every time.
 //
 //   fuzz_json_replay CORPUS [MUTANTS]
 //   fuzz_json_replay --write-seeds FOLDER     for libFuzzer to set out from

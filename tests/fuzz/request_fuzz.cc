@@ -1,6 +1,7 @@
 // What of a request is taken apart before anyone looks at it: heads, targets,
 // queries, forms. The first byte chooses.
 
+#include "engine/base/utf8.h"
 #include "server/http/message_head.h"
 #include "server/http/multipart.h"
 #include "server/http/query.h"

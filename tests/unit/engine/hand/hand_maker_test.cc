@@ -95,6 +95,11 @@ TEST(Urdf, OfWhatIsNoHandNamesTheFault) {
               HasSubstr("joint trail"));
 }
 
+TEST(Urdf, IsUtf8Text) {
+  EXPECT_THAT(FindFault(std::string(kUrdf) + "\xE1"), HasSubstr("UTF-8"));
+  EXPECT_EQ(FindFault(std::string(kUrdf) + "<!-- \xC3\xA9 -->"), "none");
+}
+
 TEST(HandTreeCheck, RefusesWhatNoUrdfReaderMakes) {
   const HandTree good = ReadUrdf(kUrdf).value();
   EXPECT_TRUE(CheckHandTree(good));
