@@ -143,12 +143,11 @@ bool Connection::Write(std::string_view bytes) {
   return true;
 }
 
-void Connection::Linger(std::chrono::milliseconds patience,
-                        bool still_sending) {
+void Connection::Linger(bool still_sending) {
   constexpr size_t kMostDiscarded = 64 << 20;
   constexpr std::chrono::milliseconds kStep{2};
   shutdown(socket_, SHUT_WR);
-  const auto deadline = Clock::now() + patience;
+  const auto deadline = Clock::now() + limits_.linger_timeout;
   std::array<char, 16384> bytes;
   for (size_t discarded = 0;
        discarded < kMostDiscarded && Clock::now() < deadline;) {

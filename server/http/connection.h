@@ -47,7 +47,7 @@ class Connection {
    client gets to see the answer: until that has reached it, or the client goes.
    @param still_sending  The client may not look at the answer before it has
      sent what it was about to: only its going ends the wait. */
-  void Linger(std::chrono::milliseconds patience, bool still_sending);
+  void Linger(bool still_sending);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -148,13 +148,13 @@ thread_local Welcome current_welcome = Welcome::kServed;
  too much to do, too, they are closed without a word. */
 class ConnectionQueue final : public httplib::TaskQueue {
  public:
-  explicit ConnectionQueue(size_t threads)
-      : served_{threads}, turned_away_{1} {}
+  /** @param line  How many may wait, and how many to be turned away. */
+  ConnectionQueue(size_t threads, size_t line)
+      : line_(line), served_(threads), turned_away_(1) {}
 
   void enqueue(std::function<void()> serve) override {
-    const size_t line = kWaitingPerThread * served_.threads;
-    if (!Put(served_, line, Welcome::kServed, serve) &&
-        !Put(turned_away_, line, Welcome::kTurnedAway, serve)) {
+    if (!Put(served_, Welcome::kServed, serve) &&
+        !Put(turned_away_, Welcome::kTurnedAway, serve)) {
       current_welcome = Welcome::kDropped;
       serve();
     }
@@ -167,8 +167,6 @@ class ConnectionQueue final : public httplib::TaskQueue {
   bool IsCrowded() const { return served_.inside > served_.threads; }
 
  private:
-  static constexpr size_t kWaitingPerThread = 4;
-
   struct Room {
     explicit Room(size_t count) : threads(count), pool(count) {}
     const size_t threads;
@@ -176,9 +174,8 @@ class ConnectionQueue final : public httplib::TaskQueue {
     httplib::ThreadPool pool;
   };
 
-  static bool Put(Room& room, size_t line, Welcome welcome,
-                  std::function<void()>& serve) {
-    if (room.inside >= room.threads + line) return false;
+  bool Put(Room& room, Welcome welcome, std::function<void()>& serve) const {
+    if (room.inside >= room.threads + line_) return false;
     ++room.inside;
     room.pool.enqueue([&room, welcome, serve = std::move(serve)] {
       current_welcome = welcome;
@@ -188,6 +185,7 @@ class ConnectionQueue final : public httplib::TaskQueue {
     return true;
   }
 
+  const size_t line_;
   Room served_;
   Room turned_away_;
 };
@@ -316,12 +314,12 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
 }
 
 void HttpServer::Impl::ServeConnection(socket_t socket) {
-  // Who has others to turn away waits for nobody.
-  constexpr std::chrono::milliseconds kMoment{100};
-  constexpr std::chrono::milliseconds kPatience{1000};
   const bool turned_away = current_welcome == Welcome::kTurnedAway;
   HttpLimits limits = options.limits;
-  if (turned_away) limits.idle_timeout = limits.head_timeout = kMoment;
+  if (turned_away) {
+    limits.idle_timeout = limits.head_timeout = limits.linger_timeout =
+        limits.turned_away_timeout;
+  }
   Connection connection(socket, stop_fd, limits);
   for (size_t count = 1;; ++count) {
     if (!AwaitMessage(connection, limits.idle_timeout)) break;
@@ -343,8 +341,7 @@ void HttpServer::Impl::ServeConnection(socket_t socket) {
     }
     ServeExchange(connection, exchange);
     if (exchange.close) {
-      connection.Linger(turned_away ? kMoment : kPatience,
-                        exchange.fault || !connection.AtMessageEnd());
+      connection.Linger(exchange.fault || !connection.AtMessageEnd());
       break;
     }
   }
@@ -352,10 +349,9 @@ void HttpServer::Impl::ServeConnection(socket_t socket) {
 
 bool HttpServer::Impl::AwaitMessage(const Connection& connection,
                                     std::chrono::milliseconds patience) const {
-  // While others wait for a thread, a client is idle after a second.
-  constexpr std::chrono::milliseconds kStep{1000};
-  for (; patience > kStep; patience -= kStep) {
-    if (connection.AwaitMessage(kStep)) return true;
+  const std::chrono::milliseconds step = options.limits.crowded_idle_timeout;
+  for (; patience > step; patience -= step) {
+    if (connection.AwaitMessage(step)) return true;
     if (IsCrowded() || stop.stop_requested()) return false;
   }
   return connection.AwaitMessage(patience);
@@ -552,7 +548,9 @@ HttpServer::HttpServer(Router router, HttpServerOptions options)
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   });
   server.new_task_queue = [impl] {
-    auto* queue = new ConnectionQueue(impl->options.threads);
+    const size_t threads = impl->options.threads;
+    auto* queue = new ConnectionQueue(
+        threads, threads * impl->options.limits.max_waiting_per_thread);
     impl->queue = queue;
     return queue;
   };

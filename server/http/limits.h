@@ -21,7 +21,15 @@ struct HttpLimits {
   size_t max_form_head_bytes{8192};   ///< The header fields of a form part.
   size_t max_form_field_bytes{4096};  ///< A form part without a file.
   std::chrono::milliseconds idle_timeout{5000};  ///< Between two requests.
+  /** The same while others wait for a thread. */
+  std::chrono::milliseconds crowded_idle_timeout{1000};
   std::chrono::milliseconds head_timeout{10'000};
+  /** Connections that may wait for each thread; as many again are told that
+   they may not, and each has a moment to say what it wants. */
+  size_t max_waiting_per_thread{4};
+  std::chrono::milliseconds turned_away_timeout{100};
+  /** For a client to take the last answer before its connection ends. */
+  std::chrono::milliseconds linger_timeout{1000};
   std::chrono::seconds body_timeout{120};
   std::chrono::seconds write_timeout{30};  ///< Without a byte getting away.
   /** A client that takes less of an answer, after write_timeout, is cut off. */

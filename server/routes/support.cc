@@ -47,7 +47,7 @@ std::string CalcRequestSha256(const HttpRequest& request) {
   return CalcSha256(content);
 }
 
-// The content of the form's file of that name, or nothing.
+// The content of the form's file of that name, or null.
 const std::string* FindFile(const HttpRequest& request,
                             const std::string& name) {
   for (const FormPart& file : request.files) {

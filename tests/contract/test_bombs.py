@@ -7,7 +7,6 @@ import pathlib
 import re
 import socket
 import struct
-import subprocess
 import time
 
 import pytest
@@ -125,19 +124,10 @@ def throw(port, sent, more):
     return int(answer[9:12])
 
 
-@pytest.fixture(scope="module")
-def database(binary, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("bombs")
-    (folder / "data").mkdir()
-    path = folder / "a.db"
-    subprocess.run([binary, "populate", str(folder / "data"), "--db", str(path)], check=True)
-    return path
-
-
 @pytest.mark.parametrize("name", BOMBS)
-def test_what_is_small_to_send_is_small_to_hold(binary, database, tmp_path, name):
+def test_what_is_small_to_send_is_small_to_hold(binary, tmp_path, name):
     sent, more, statuses, most = BOMBS[name]
-    live = LiveServer(binary, database, tmp_path)
+    live = LiveServer(binary, tmp_path / "a.db", tmp_path)
     requests.get(live.url + "/healthz", timeout=20)
     before = read_memory(live.process.pid, "VmRSS")
     begin = time.monotonic()
@@ -151,9 +141,9 @@ def test_what_is_small_to_send_is_small_to_hold(binary, database, tmp_path, name
     assert grown < most * MIB or SLOWER > 1
 
 
-def test_many_at_once_are_held_within_the_budget_of_bodies(binary, database, tmp_path):
+def test_many_at_once_are_held_within_the_budget_of_bodies(binary, tmp_path):
     """Forty bodies without end, more than all that may be held."""
-    live = LiveServer(binary, database, tmp_path)
+    live = LiveServer(binary, tmp_path / "a.db", tmp_path)
     requests.get(live.url + "/healthz", timeout=20)
     before = read_memory(live.process.pid, "VmRSS")
     links = [socket.create_connection(("127.0.0.1", live.port), 60) for _ in range(40)]

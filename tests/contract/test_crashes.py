@@ -298,7 +298,8 @@ def test_a_full_disk_is_a_507_until_there_is_room(binary, tmp_path):
     denied = ("Operation not permitted", "permission denied", "must be superuser")
     if probe.returncode and any(word in probe.stderr for word in denied):
         pytest.skip("this container forbids mounting; that a full disk is told and heals is "
-                    "shown in a VFS by storage_test, IoError and DiskFull: "
+                    "shown in a VFS by storage_test, IoError and DiskFull, and that it is a 507 "
+                    "by routes_test, FailingHandlers and TheDisk: "
                     + probe.stderr.strip())
     assert probe.returncode == 0, probe.stderr
     empty = tmp_path / "empty.db"

@@ -1,7 +1,6 @@
 """What every operation may refuse, it does in the form that the contract declares."""
 
 import socket
-import subprocess
 import time
 
 import pytest
@@ -21,10 +20,7 @@ NAMES = {"id": "a", "name": "a", "file": "a"}
 def live(binary, tmp_path_factory):
     """A server of one thread, for which four connections may wait."""
     folder = tmp_path_factory.mktemp("refusals")
-    (folder / "data").mkdir()
-    database = folder / "a.db"
-    subprocess.run([binary, "populate", str(folder / "data"), "--db", str(database)], check=True)
-    live = LiveServer(binary, database, folder, "--http-threads", "1",
+    live = LiveServer(binary, folder / "a.db", folder, "--http-threads", "1",
                       "--max-upload-bytes", str(BODY_LIMIT))
     yield live
     assert live.stop() == 0, live.log()

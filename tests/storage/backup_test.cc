@@ -105,7 +105,7 @@ TEST_F(BackupTest, UnderWritesHoldsAllThatWasAcknowledgedBefore) {
   }
 }
 
-TEST_F(BackupTest, OfTensOfMegabytesTakesSeconds) {
+TEST_F(BackupTest, HoldsTensOfMegabytes) {
   const int pieces = std::min(100, CountRounds(20));
   for (int i = 0; i < pieces; ++i) {
     ASSERT_TRUE(store_->InsertJob(JobKind::kLearn, true, "{}",
