@@ -18,22 +18,16 @@
 
 #include <fmt/format.h>
 
-#include "server/http/body_budget.h"
 #include "server/http/connection.h"
+#include "server/http/dispatcher.h"
 #include "server/http/log_line.h"
 #include "server/http/problem.h"
-#include "server/http/request_body.h"
 #include "server/http/site.h"
-#include "server/http/target.h"
 
 namespace graspdb {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr char kUnknownException[] = "unknown exception";
-/** Instead of a route, in the metrics. */
-constexpr char kTurnedAwayRoute[] = "turned away";
 
 /** One request on its way through the server. */
 struct Exchange {
@@ -193,12 +187,9 @@ class ConnectionQueue final : public httplib::TaskQueue {
 }  // namespace
 
 struct HttpServer::Impl : httplib::Server {
-  Impl(Router router_in, HttpServerOptions options_in)
-      : router(std::move(router_in)),
-        options(std::move(options_in)),
-        budget(std::max(options.limits.max_held_bytes,
-                        2 * static_cast<size_t>(std::max<int64_t>(
-                                0, options.limits.max_upload_bytes)))) {}
+  Impl(Router router, HttpServerOptions options_in)
+      : options(std::move(options_in)),
+        dispatcher(std::move(router), options.limits, options.log) {}
   ~Impl() override {
     close(stop_fd);
     // The library closes the socket at the end of serving, and only then.
@@ -218,10 +209,8 @@ struct HttpServer::Impl : httplib::Server {
   void Answer(const httplib::ContentReader* reader, httplib::Response& out);
   void Stream(HttpResponse response, Exchange& exchange,
               httplib::Response& out);
-  HttpResponse Route(Exchange& exchange, const httplib::ContentReader* reader);
-  HttpResponse Handle(Exchange& exchange, const graspdb::Route& route,
-                      HttpRequest& request,
-                      const httplib::ContentReader* reader);
+  HttpResponse Respond(Exchange& exchange,
+                       const httplib::ContentReader* reader);
   bool IsCrowded() const {
     const ConnectionQueue* const now = queue;
     return now != nullptr && now->IsCrowded();
@@ -229,13 +218,8 @@ struct HttpServer::Impl : httplib::Server {
   void Log(const std::string& line) const {
     if (options.log) options.log(line);
   }
-  void LogInternal(const std::string& id, const std::string& cause) const {
-    Log(MakeLogLine("error", "internal", {{"id", id}, {"cause", cause}}));
-  }
-
-  Router router;
   HttpServerOptions options;
-  BodyBudget budget;
+  Dispatcher dispatcher;
   std::mutex sockets_mutex;
   std::set<socket_t> sockets;  // Of the connections that are served.
   bool cut{false};             // Those, and all that come, end.
@@ -298,10 +282,10 @@ bool HttpServer::Impl::process_and_close_socket(socket_t socket) {
       options.metrics->AddDropped();
     }
   } catch (const std::exception& exception) {  // Say, for want of memory.
-    LogInternal("", exception.what());
+    dispatcher.LogInternal("", exception.what());
     current_exchange = nullptr;
   } catch (...) {
-    LogInternal("", kUnknownException);
+    dispatcher.LogInternal("", kUnknownException);
     current_exchange = nullptr;
   }
   {
@@ -391,7 +375,7 @@ void HttpServer::Impl::ServeExchange(Connection& connection,
 void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
                               httplib::Response& out) {
   Exchange& exchange = *current_exchange;
-  HttpResponse response = Route(exchange, reader);
+  HttpResponse response = Respond(exchange, reader);
   std::string timing;
   for (const auto& [stage, milliseconds] : response.timings) {
     timing += fmt::format("{};dur={:.1f}, ", stage, milliseconds);
@@ -423,6 +407,21 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
   }
 }
 
+HttpResponse HttpServer::Impl::Respond(Exchange& exchange,
+                                       const httplib::ContentReader* reader) {
+  if (exchange.fault) {
+    return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
+                       exchange.id);
+  }
+  auto answer = dispatcher.Dispatch(
+      {exchange.head, exchange.id,
+       [&](const BodyTaker& take) { return ReadAll(exchange, reader, take); },
+       IsLoopback(host), current_welcome == Welcome::kTurnedAway,
+       stop.get_token()});
+  exchange.pattern = std::move(answer.pattern);
+  return std::move(answer.response);
+}
+
 void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
                               httplib::Response& out) {
   const auto send = [this, next = std::move(response.next_piece), &exchange](
@@ -432,10 +431,10 @@ void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
       piece = next();
     } catch (const std::exception& exception) {
       // The client sees that the answer is cut short.
-      LogInternal(exchange.id, exception.what());
+      dispatcher.LogInternal(exchange.id, exception.what());
       return false;
     } catch (...) {
-      LogInternal(exchange.id, kUnknownException);
+      dispatcher.LogInternal(exchange.id, kUnknownException);
       return false;
     }
     if (!piece) {
@@ -451,90 +450,6 @@ void HttpServer::Impl::Stream(HttpResponse response, Exchange& exchange,
   } else {
     out.set_chunked_content_provider(response.content_type, send);
   }
-}
-
-HttpResponse HttpServer::Impl::Route(Exchange& exchange,
-                                     const httplib::ContentReader* reader) {
-  if (exchange.fault) {
-    return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
-                       exchange.id);
-  }
-  if (const auto fault = FindForeignSite(exchange.head, IsLoopback(host))) {
-    return MakeProblem(HttpFault::kMalformedRequest, *fault, "", exchange.id);
-  }
-  const auto target = ParseTarget(exchange.head.target);
-  if (!target) {
-    return MakeProblem(HttpFault::kMalformedRequest, target.error().message,
-                       target.error().hint, exchange.id);
-  }
-  HttpRequest request;
-  request.id = exchange.id;
-  request.method =
-      exchange.head.method == "HEAD" ? "GET" : exchange.head.method;
-  for (const auto& segment : target->segments) request.path += "/" + segment;
-  if (request.path.empty()) request.path = "/";
-  RouteMatch match = router.Find(request.method, target->segments);
-  if (match.route == nullptr && match.allowed.empty()) {
-    return MakeProblem(
-        {ErrorCode::kNotFound,
-         fmt::format("There is nothing at {}.", request.path.substr(0, 200)),
-         "GET /openapi.json lists every path."},
-        exchange.id);
-  }
-  if (match.route == nullptr) {
-    const std::string allowed =
-        fmt::format("{}", fmt::join(match.allowed, ", "));
-    HttpResponse response = MakeProblem(
-        HttpFault::kMethodNotAllowed,
-        fmt::format("{} takes {}.", request.path.substr(0, 200), allowed), "",
-        exchange.id);
-    response.headers.emplace_back("Allow", allowed);
-    return response;
-  }
-  exchange.pattern = match.route->pattern;
-  if (current_welcome == Welcome::kTurnedAway && !match.route->vital) {
-    exchange.pattern = kTurnedAwayRoute;
-    return MakeProblem(
-        {ErrorCode::kOverloaded, "More connections wait than can be served.",
-         "wait as long as Retry-After says"},
-        exchange.id);
-  }
-  request.path_parameters = std::move(match.path_parameters);
-  request.query = target->query;
-  request.headers = exchange.head.fields;
-  request.stop = stop.get_token();
-  return Handle(exchange, *match.route, request, reader);
-}
-
-HttpResponse HttpServer::Impl::Handle(Exchange& exchange,
-                                      const graspdb::Route& route,
-                                      HttpRequest& request,
-                                      const httplib::ContentReader* reader) {
-  Error error{ErrorCode::kInternal, kUnknownException, ""};
-  try {
-    auto refusal = ReadRequestBody(
-        exchange.head, route.body, options.limits, budget,
-        [&](const BodyTaker& take) { return ReadAll(exchange, reader, take); },
-        request);
-    if (refusal) return std::move(*refusal);
-    auto response = route.handler(request);
-    if (response) return std::move(*response);
-    error = response.error();
-  } catch (const std::exception& exception) {
-    error.message = exception.what();
-  } catch (...) {
-  }
-  if (error.code == ErrorCode::kCancelled && request.stop.stop_requested()) {
-    error = {ErrorCode::kOverloaded, "The server is stopping.",
-             "send it again when it is back"};
-  }
-  if (error.code == ErrorCode::kInternal)
-    LogInternal(request.id, error.message);
-  if (error.code == ErrorCode::kStorage) {
-    Log(MakeLogLine("error", "storage",
-                    {{"id", request.id}, {"cause", error.message}}));
-  }
-  return MakeProblem(error, request.id);
 }
 
 HttpServer::HttpServer(Router router, HttpServerOptions options)
