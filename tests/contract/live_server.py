@@ -1,6 +1,8 @@
 """A real graspdb on a database of its own, in a temporary folder."""
 
 import os
+import pathlib
+import re
 import signal
 import socket
 import subprocess
@@ -47,6 +49,11 @@ class LiveServer:
             socket.create_connection(("127.0.0.1", self.port), 1).close()
         except OSError:
             pass  # It has gone already.
+
+    def memory(self, name="VmRSS"):
+        """Bytes, by their name in /proc: resident, or VmHWM, the most so far."""
+        status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
+        return 1024 * int(re.search(name + r":\s+(\d+)", status)[1])
 
     def log(self):
         return self.log_path.read_text(errors="replace")

@@ -3,8 +3,6 @@ own, fresh, so that the kernel's high-water mark tells what the bomb cost; the
 figures are told. A body may take as much as the limit of bodies and its copy, JSON
 64 MiB, everything else 32 MiB."""
 
-import pathlib
-import re
 import socket
 import struct
 import time
@@ -95,11 +93,6 @@ BOMBS = {
 }
 
 
-def read_memory(pid, name):
-    status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    return 1024 * int(re.search(name + r":\s+(\d+)", status)[1])
-
-
 def throw(port, sent, more):
     """Sends, and goes on until an answer comes; its status."""
     with socket.create_connection(("127.0.0.1", port), 60) as link:
@@ -129,11 +122,11 @@ def test_what_is_small_to_send_is_small_to_hold(binary, tmp_path, name):
     sent, more, statuses, most = BOMBS[name]
     live = LiveServer(binary, tmp_path / "a.db", tmp_path)
     requests.get(live.url + "/healthz", timeout=20)
-    before = read_memory(live.process.pid, "VmRSS")
+    before = live.memory()
     begin = time.monotonic()
     status = throw(live.port, sent, more)
     seconds = time.monotonic() - begin
-    grown = read_memory(live.process.pid, "VmHWM") - before
+    grown = live.memory("VmHWM") - before
     assert requests.get(live.url + "/healthz", timeout=20).status_code == 200
     assert live.stop() == 0, live.log()
     print(f"\n{name}: {status} after {1e3 * seconds:.0f} ms, {grown / MIB:.1f} MiB")
@@ -145,7 +138,7 @@ def test_many_at_once_are_held_within_the_budget_of_bodies(binary, tmp_path):
     """Forty bodies without end, more than all that may be held."""
     live = LiveServer(binary, tmp_path / "a.db", tmp_path)
     requests.get(live.url + "/healthz", timeout=20)
-    before = read_memory(live.process.pid, "VmRSS")
+    before = live.memory()
     links = [socket.create_connection(("127.0.0.1", live.port), 60) for _ in range(40)]
     for link in links:
         link.sendall(post(b"/v1/objects", CHUNKED))
@@ -156,7 +149,7 @@ def test_many_at_once_are_held_within_the_budget_of_bodies(binary, tmp_path):
                 link.sendall(CHUNK)
             except OSError:
                 sending.remove(link)  # It has been refused.
-    grown = read_memory(live.process.pid, "VmHWM") - before
+    grown = live.memory("VmHWM") - before
     assert requests.get(live.url + "/healthz", timeout=20).status_code == 200
     refused = 0
     for link in links:

@@ -39,12 +39,6 @@ MOST_GROWTH = 96 << 20  # Bytes, after the first third.
 MOST_FILES = 60  # Descriptors that are no sockets: connections to the database.
 
 
-def read_resident(pid):
-    """Bytes of memory."""
-    status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    return 1024 * int(re.search(r"VmRSS:\s+(\d+)", status)[1])
-
-
 def read_descriptors(pid):
     """How many are sockets, and how many anything else."""
     sockets = others = 0
@@ -58,12 +52,13 @@ def read_descriptors(pid):
     return sockets, others
 
 
-def watch(pid, until):
+def watch(server, until):
     """Rows of seconds, resident bytes and descriptors that are no sockets, until then."""
     rows = []
     begin = time.monotonic()
     while not rows or time.monotonic() < until:
-        rows.append((time.monotonic() - begin, read_resident(pid), read_descriptors(pid)[1]))
+        rows.append((time.monotonic() - begin, server.memory(),
+                     read_descriptors(server.process.pid)[1]))
         time.sleep(0.25)
     return numpy.array(rows)
 
@@ -180,7 +175,7 @@ def test_sixty_four_clients_get_what_they_ask_for_or_are_told_to_wait(busy):
             client.start()
         # What is kept in memory fills up first.
         time.sleep(SECONDS / 3)
-        rows = watch(pid, start + SECONDS)
+        rows = watch(busy, start + SECONDS)
         answers = join(clients)
         probed = probing.result()
 
@@ -228,7 +223,7 @@ def test_far_more_than_can_be_served_is_told_to_wait_and_soon_forgotten(
     for client in clients:
         client.start()
     time.sleep(patient(OVERLOAD_SECONDS) / 3)
-    rows = watch(live.process.pid, end)
+    rows = watch(live, end)
     answers = join(clients)
     begin = time.monotonic()
     box = meshes.box_obj(0.04, 0.05, 0.06)

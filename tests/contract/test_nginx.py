@@ -3,7 +3,6 @@ hostile or slow client may do, and that everyone else does not notice."""
 
 import itertools
 import os
-import pathlib
 import re
 import resource
 import shutil
@@ -90,11 +89,6 @@ def statuses(answer):
     return [int(s) for s in re.findall(rb"HTTP/1\.1 (\d{3})", answer)]
 
 
-def resident_bytes(pid):
-    status = pathlib.Path(f"/proc/{pid}/status").read_text()
-    return 1024 * int(re.search(r"VmRSS:\s+(\d+)", status)[1])
-
-
 def test_what_the_server_answers_comes_through(front, server, world):
     for path in ("/", "/healthz", "/v1/hands", "/v1/grasps?limit=2", "/v1/objects/none"):
         through = requests.get(front.url + path, timeout=10)
@@ -149,7 +143,7 @@ def test_a_message_of_two_meanings_gets_one_answer_and_that_is_no(front, message
 
 
 def test_what_is_too_large_is_refused_before_it_is_kept(front, server):
-    before = resident_bytes(server.process.pid)
+    before = server.memory()
     long_field = b"GET /healthz HTTP/1.1\r\n" + HOST + b"X: " + b"a" * 40000 + b"\r\n\r\n"
     assert statuses(front.send(long_field)) in ([400], [431], [494])
     many = b"".join(b"X%d: y\r\n" % i for i in range(5000))
@@ -173,7 +167,7 @@ def test_what_is_too_large_is_refused_before_it_is_kept(front, server):
     ranges = "bytes=" + ",".join(f"{i}-" for i in range(300))
     page = requests.get(front.url + "/", headers={"Range": ranges}, timeout=10)
     assert page.status_code == 200
-    assert resident_bytes(server.process.pid) - before < 32 << 20
+    assert server.memory() - before < 32 << 20
 
 
 def open_slow(front, address, what):

@@ -123,7 +123,7 @@ class PrimitiveBench {
          Time([&] { return CalcShapeDiameters(mesh)[0]; }), sdf, std::nullopt});
   }
 
-  // The distance at every node of the field, of which some are asked for.
+  // As many distances as the field has nodes, of which a few are measured.
   LibraryTiming TimeFieldByCgal(const Solid& solid,
                                 const CgalSurface& cgal) const {
     constexpr int64_t kStride = 256;
@@ -143,7 +143,20 @@ class PrimitiveBench {
       return sum;
     });
     for (double& seconds : timing.samples) seconds *= kStride;
-    return {"CGAL AABB_tree at each node (1 in 256 taken)", std::move(timing)};
+    return {"CGAL AABB_tree, a point for each node (1 in 256 taken)",
+            std::move(timing)};
+  }
+
+  // @param X_HL  Of each of the scene's grasps.
+  Timing TimeDistanceByFcl(
+      const SpeedScene& scene,
+      const std::vector<std::vector<RigidTransform>>& X_HL) const {
+    size_t i = 0;
+    return Time([&] {
+      const size_t at = i++ % X_HL.size();
+      return CalcDistanceByFcl(scene.hand, scene.grasps[at].configuration.X_OH,
+                               X_HL[at], scene.solid);
+    });
   }
 
   void MeasureHand(const SpeedScene& scene) {
@@ -168,7 +181,6 @@ class PrimitiveBench {
                        })},
          std::nullopt});
     size_t i = 0;
-    size_t k = 0;
     Add({"gap to the object, estimated", std::nullopt, Time([&] {
            const size_t at = i++ % X_HL.size();
            const RigidTransform& X_OH = scene.grasps[at].configuration.X_OH;
@@ -182,12 +194,7 @@ class PrimitiveBench {
            }
            return least;
          }),
-         LibraryTiming{"FCL distance", Time([&] {
-                         const size_t at = k++ % X_HL.size();
-                         return CalcDistanceByFcl(
-                             scene.hand, scene.grasps[at].configuration.X_OH,
-                             X_HL[at], scene.solid);
-                       })},
+         LibraryTiming{"FCL distance", TimeDistanceByFcl(scene, X_HL)},
          std::nullopt});
   }
 
@@ -247,7 +254,6 @@ class PrimitiveBench {
       X_HL.push_back(CalcLinkPoses(scene.hand.model(), grasp.configuration.q));
     }
     size_t i = 0;
-    size_t k = 0;
     Add({"contact extraction", std::nullopt, Time([&] {
            const size_t at = i++ % X_HL.size();
            return ExtractContacts(scene.hand,
@@ -255,12 +261,8 @@ class PrimitiveBench {
                                   scene.solid, scene.parameters.contact)
                .size();
          }),
-         LibraryTiming{"FCL distance, one point a link", Time([&] {
-                         const size_t at = k++ % X_HL.size();
-                         return CalcDistanceByFcl(
-                             scene.hand, scene.grasps[at].configuration.X_OH,
-                             X_HL[at], scene.solid);
-                       })},
+         LibraryTiming{"FCL distance, one point a link",
+                       TimeDistanceByFcl(scene, X_HL)},
          std::nullopt});
     for (int count = kFewContacts; count <= kManyContacts; ++count) {
       MeasureEpsilon(
