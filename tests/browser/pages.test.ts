@@ -160,22 +160,36 @@ describe('a grasp', () => {
   });
 });
 
+/** What has stood in the page's status line; a text of a moment, too. */
+async function recordStatus(page: Page): Promise<() => Promise<string[]>> {
+  const texts = await page.evaluateHandle(() => {
+    const seen = new Set<string>();
+    new MutationObserver(() => {
+      document.querySelectorAll('[role=status]').forEach((each) => seen.add(each.textContent));
+    }).observe(document.body, { subtree: true, childList: true, characterData: true });
+    return seen;
+  });
+  return () => texts.evaluate((seen) => [...seen]);
+}
+
 describe('an upload', () => {
   it('is watched while its grasps are found', async () => {
     const visitor = await enter();
     const { page } = visitor;
     await visitor.visit('/?view=upload');
+    const readStatus = await recordStatus(page);
     await page.locator('input[type=file]').setInputFiles({
       name: 'square.obj', mimeType: 'model/obj', buffer: readMug('square.obj'),
     });
     await page.getByLabel('Category').selectOption('mug');
     await page.getByLabel('Source grasps per part').fill('10');
-    await page.getByLabel('Grasps wanted').fill('2');
+    await page.getByLabel('Grasps wanted').fill('6');
     await page.getByRole('button', { name: 'Find grasps' }).click();
-    await page.getByText(/[1-9]\d* grasps? so far/).waitFor({ timeout: JOB_LIMIT });
+    await page.getByText(/so far|^Succeeded/).waitFor({ timeout: JOB_LIMIT });
     await page.waitForTimeout(1500); // For the picture: the stream never lets the network rest.
     await visitor.picture('upload-running');
     await page.getByText(/^Succeeded: [1-9]/).waitFor({ timeout: JOB_LIMIT });
+    expect(await readStatus()).toContainEqual(expect.stringMatching(/^[1-9]\d* grasps? so far/));
     await visitor.settle();
     await visitor.picture('upload-done');
     const id = new URL(page.url()).searchParams.get('job') ?? '';
@@ -185,10 +199,24 @@ describe('an upload', () => {
     const transfer = (await (await page.request.get(job.result.href)).json()) as {
       enough: number | null;
     };
-    expect(transfer.enough).toBe(2);
+    expect(transfer.enough).toBe(6);
     expect(await option(page, 0).count()).toBe(1);
     // The link still works when the job has ended.
     await visitor.visit(page.url());
+    await page.getByText(/^Succeeded: [1-9]/).waitFor({ timeout: JOB_LIMIT });
+  });
+
+  it('is watched though the server refuses the stream at first', async () => {
+    const visitor = await enter({ expectedStatus: 503 });
+    const { page } = visitor;
+    await page.route('**/events', (route) => route.fulfill({ status: 503 }), { times: 2 });
+    await visitor.visit('/?view=upload');
+    await page.locator('input[type=file]').setInputFiles({
+      name: 'square.obj', mimeType: 'model/obj', buffer: readMug('square.obj'),
+    });
+    await page.getByLabel('Category').selectOption('mug');
+    await page.getByLabel('Source grasps per part').fill('10');
+    await page.getByRole('button', { name: 'Find grasps' }).click();
     await page.getByText(/^Succeeded: [1-9]/).waitFor({ timeout: JOB_LIMIT });
   });
 
