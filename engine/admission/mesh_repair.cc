@@ -43,6 +43,7 @@ using Halfedge = SurfaceMesh::Halfedge_index;
 // Lengths as shares of the diagonal of the soup's box.
 constexpr double kWrapAlpha = 1.0 / 75.0;
 constexpr double kWrapOffset = 1.0 / 1000.0;
+constexpr double kCoarsening = 3.0;  // Of a wrap of too many points.
 // The share of the offset that is taken back after wrapping.
 constexpr double kShrinking = 0.8;
 // A share of the diagonal cubed.
@@ -375,17 +376,48 @@ SurfaceMesh Shrink(const SurfaceMesh& wrap, double distance) {
   return pmp::does_self_intersect(shrunk) ? wrap : shrunk;
 }
 
-SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal, RepairLog& log) {
+struct TooManyPoints {};
+
+/** Ends a wrap that takes too many points. The library calls it at each step;
+ its own visitor does nothing. */
+struct PointCounter : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+  template <class Wrapper, class Vertex>
+  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
+    if (++points > most) throw TooManyPoints();
+  }
+  std::size_t most{0};
+  std::size_t points{0};
+};
+
+std::optional<SurfaceMesh> TryWrap(const Soup& soup, double alpha,
+                                   double offset, std::size_t most_points) {
   SurfaceMesh wrap;
-  const double alpha = kWrapAlpha * diagonal;
-  const double offset = kWrapOffset * diagonal;
+  PointCounter counter;
+  counter.most = most_points;
+  try {
+    CGAL::alpha_wrap_3(soup.points, soup.faces, alpha, offset, wrap,
+                       CGAL::parameters::default_values(),
+                       CGAL::parameters::visitor(counter));
+  } catch (const TooManyPoints&) {
+    return std::nullopt;
+  }
+  return Shrink(wrap, kShrinking * offset);
+}
+
+SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal,
+                 std::size_t most_points, RepairLog& log) {
   Soup soup;
   AppendTo(soup, surface);
-  CGAL::alpha_wrap_3(soup.points, soup.faces, alpha, offset, wrap);
-  log.Add(fmt::format("wrapped {}, closing gaps of up to {:.2g} mm",
-                      DescribeCount(soup.faces.size(), "face", "faces"),
-                      1e3 * alpha));
-  return Shrink(wrap, kShrinking * offset);
+  for (double coarseness = 1.0;; coarseness *= kCoarsening) {
+    const double alpha = coarseness * kWrapAlpha * diagonal;
+    const double offset = coarseness * kWrapOffset * diagonal;
+    auto wrap = TryWrap(soup, alpha, offset, most_points);
+    if (!wrap) continue;
+    log.Add(fmt::format("wrapped {}, closing gaps of up to {:.2g} mm",
+                        DescribeCount(soup.faces.size(), "face", "faces"),
+                        1e3 * alpha));
+    return *std::move(wrap);
+  }
 }
 
 Error MakeError(std::string message,
@@ -425,7 +457,8 @@ std::optional<Mended> Mend(Soup soup, double diagonal, RepairLog log,
   return std::nullopt;
 }
 
-Result<RepairedMesh> Repair(const TriangleMesh& mesh, RepairLog log) {
+Result<RepairedMesh> Repair(const TriangleMesh& mesh,
+                            std::size_t most_wrap_points, RepairLog log) {
   const double diagonal = mesh.diagonal();
   const TriangleSoup soup = CleanSoup(mesh, log);
   if (soup.faces.empty()) {
@@ -435,7 +468,8 @@ Result<RepairedMesh> Repair(const TriangleMesh& mesh, RepairLog log) {
   auto mended = Mend(ToSoup(soup), diagonal, log, &rest);
   if (!mended ||
       CalcLostExtent(mended->solid, mesh) > kMostLostExtent * diagonal) {
-    Mended wrapped{Wrap(rest.solid, diagonal, rest.log), rest.log};
+    Mended wrapped{Wrap(rest.solid, diagonal, most_wrap_points, rest.log),
+                   rest.log};
     const bool in_one_piece = CountShells(wrapped.solid) == 1;
     if (!in_one_piece && !mended &&
         !DropFragments(wrapped.solid, wrapped.log)) {
@@ -455,13 +489,14 @@ Result<RepairedMesh> Repair(const TriangleMesh& mesh, RepairLog log) {
 
 }  // namespace
 
-Result<RepairedMesh> RepairMesh(const TriangleMesh& soup) {
+Result<RepairedMesh> RepairMesh(const TriangleMesh& soup,
+                                std::size_t most_wrap_points) {
   RepairLog log;
   const TriangleMesh mesh = DropUnusedVertices(soup, log);
   if (auto why = FindHopelessness(mesh)) return MakeError(*why);
   try {
     if (IsSolid(mesh)) return RepairedMesh{mesh, log.sentences()};
-    return Repair(mesh, std::move(log));
+    return Repair(mesh, most_wrap_points, std::move(log));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {

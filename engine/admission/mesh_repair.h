@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,18 @@ struct RepairedMesh {
   std::vector<std::string> repairs;
 };
 
+/** A wrap of more points is begun anew, three times as coarse. An object of
+ thin walls takes up to 12,400; a few spikes that cross each other in a box of
+ their own size would take 35,000, and 20 s. */
+inline constexpr std::size_t kMostWrapPoints = 13'000;
+
 /** Makes one closed solid of a triangle soup (metres): weld, drop degenerate
  and duplicate faces, split edges at T-junctions, orient, stitch, fill holes,
  cut self-intersections out, unite overlapping shells, drop loose fragments. If
  that is not one solid, the whole is wrapped as a last resort (alpha wrap:
  nothing narrower than 1/75 of the diagonal is entered, and the surface lies
- within about 1/1000 of it). Every hole is closed, so a cup without thickness
+ within about 1/1000 of it; three times as much where that would take more than
+ most_wrap_points). Every hole is closed, so a cup without thickness
  becomes full; the volume is that of everything the shells enclose, cavities
  included. A mesh that needs nothing keeps its vertices and faces in their
  order, exactly. The result is closed, outward, connected and does not cross
@@ -29,6 +36,7 @@ struct RepairedMesh {
  @retval kUnusableInput when no solid can be made: no faces, coordinates that
    are not finite, zero area, all points in one plane (thinner than 1/10,000 of
    the diagonal), no volume enclosed, several solids apart from each other. */
-Result<RepairedMesh> RepairMesh(const TriangleMesh& soup);
+Result<RepairedMesh> RepairMesh(const TriangleMesh& soup,
+                                std::size_t most_wrap_points = kMostWrapPoints);
 
 }  // namespace graspdb

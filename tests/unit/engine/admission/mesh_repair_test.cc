@@ -275,6 +275,23 @@ TEST(RepairMesh, WrapsSolidsThatNearlyTouch) {
             two.diagonal() / 1000.0);
 }
 
+// Spikes that cross each other took the decoder's whole 20 s.
+TEST(RepairMesh, WrapsThreeTimesAsCoarselyWhatWouldTakeTooManyPoints) {
+  const TriangleMesh two =
+      CalcUnion({MakeCube(), Move(MakeCube(), {kSide + 5e-5, 0, 0})});
+  const auto read_gap = [](const RepairedMesh& repaired) {
+    const std::string& wrapped = repaired.repairs.back();
+    return std::stod(wrapped.substr(wrapped.find("up to ") + 6));
+  };
+  const double fine = read_gap(ExpectSolid(two, 2 * kCube, 0.03));
+  const auto coarse = RepairMesh(two, 3000);
+  ASSERT_TRUE(coarse.has_value());
+  EXPECT_TRUE(IsClosed(coarse->mesh));
+  EXPECT_NEAR(read_gap(*coarse) / fine, 3.0, 0.1);
+  EXPECT_NEAR(CalcMassProperties(coarse->mesh).volume, 2 * kCube,
+              0.1 * 2 * kCube);
+}
+
 TEST(RepairMesh, WrapsRatherThanDropsWhatSticksOut) {
   // A thin rod with a gap of half a per mille of the diagonal: hardly volume.
   const TriangleMesh rod = Move(workshop::MakeBox({0.05, 0.003, 0.003}),

@@ -249,6 +249,21 @@ TEST(Decoder, OutlivesAHelperThatMisbehaves) {
   }
 }
 
+// A finding among the mutants: the library reads past the array's end.
+TEST(Decoder, OutlivesADaeThatLiesAboutItsNumbers) {
+  const FileBytes bytes = MakeDae(workshop::MakeBox({0.1, 0.1, 0.1}));
+  std::string text(bytes.begin(), bytes.end());
+  const size_t count = text.find("count=\"") + 7;
+  text.replace(count, text.find('"', count) - count, "0");
+  const Decoder decoder(MakeOptions());
+  DecodeRequest request;
+  request.file_name = "a.dae";
+  const auto lie = decoder.Decode(ToBytes(text), request);
+  ASSERT_FALSE(lie.has_value());
+  EXPECT_EQ(lie.error().code, ErrorCode::kUnusableInput);
+  EXPECT_TRUE(decoder.Decode(bytes, request).has_value());
+}
+
 // Sanitizers cannot live within a limit on memory.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
 TEST(Decoder, SaysSoWhenAMeshNeedsTooMuchMemory) {
