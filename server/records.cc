@@ -25,33 +25,6 @@ Result<Enum> Parse(const std::string& text, const char* what,
 
 }  // namespace
 
-PartVocabulary MakeVocabulary(const StoredCategory& category) {
-  PartVocabulary vocabulary;
-  for (const CategoryPart& part : category.parts) {
-    vocabulary.labels.push_back(part.label);
-  }
-  vocabulary.adjacency = category.adjacency;
-  return vocabulary;
-}
-
-std::vector<std::string> FindPartsForTask(const StoredCategory& category,
-                                          const std::string& task) {
-  std::vector<std::string> labels;
-  for (const CategoryPart& part : category.parts) {
-    if (part.tasks.contains(task)) labels.push_back(part.label);
-  }
-  return labels;
-}
-
-std::vector<std::string> FindPartsKeptFree(const StoredCategory& category,
-                                           const std::string& task) {
-  std::vector<std::string> labels;
-  for (const CategoryPart& part : category.parts) {
-    if (part.keep_free.contains(task)) labels.push_back(part.label);
-  }
-  return labels;
-}
-
 std::map<std::string, double> NameClearances(
     const std::vector<double>& clearances,
     const std::vector<std::string>& labels, const std::string& held) {

@@ -11,7 +11,7 @@
 #include "engine/base/result.h"
 #include "engine/grasp_engine.h"
 #include "engine/parameters/parameters.h"
-#include "engine/segmentation/part_segmentation.h"
+#include "server/category.h"
 
 /** @file
  What the database keeps, as plain values: shared by store (rows), codec (JSON)
@@ -32,39 +32,6 @@ struct PageRequest {
   int limit{100};      ///< 1..1000.
   std::string cursor;  ///< From the page before; empty for the first.
 };
-
-/** A part that objects of a category have, and what it is good for. */
-inline constexpr size_t kMostParts = 64;  ///< Of a category.
-inline constexpr size_t kMostTasks = 64;  ///< Of a part.
-struct CategoryPart {
-  std::string label;
-  std::map<std::string, std::string> tasks;  ///< Task name → note for people.
-  /** Tasks in which the hand keeps off this part → why. */
-  std::map<std::string, std::string> keep_free;
-
-  bool operator==(const CategoryPart&) const = default;
-};
-
-struct StoredCategory {
-  std::string name;  ///< [a-z0-9][a-z0-9_-]{0,63}
-  std::string title;
-  std::vector<CategoryPart> parts;  ///< In the order of the label indices.
-  std::vector<std::pair<int, int>> adjacency;  ///< Of label indices.
-  SegmentationParameters segmentation;
-  std::string created_at;
-
-  bool operator==(const StoredCategory&) const = default;
-};
-
-PartVocabulary MakeVocabulary(const StoredCategory& category);
-
-/** The labels of the category's parts that serve a task. */
-std::vector<std::string> FindPartsForTask(const StoredCategory& category,
-                                          const std::string& task);
-
-/** Those that the hand keeps off in a task; none for an empty one. */
-std::vector<std::string> FindPartsKeptFree(const StoredCategory& category,
-                                           const std::string& task);
 
 enum class ObjectRole { kExample, kNovel };
 

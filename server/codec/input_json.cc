@@ -10,10 +10,6 @@
 namespace graspdb {
 namespace {
 
-// A label per face, or a range: three values each, and no mesh has more faces.
-constexpr uint64_t kMostFaces = 400'000;
-constexpr JsonLimits kFileLimits{64 << 20, 64, 3 * kMostFaces + 1000};
-
 Error Invalid(const std::string& message, const std::string& field) {
   return Error{ErrorCode::kInvalidArgument, message, "", field};
 }
@@ -58,15 +54,6 @@ void ReadParts(JsonFields& fields, std::vector<CategoryPart>& parts) {
     if (const auto read = entry.Finish(); !read) fields.Fail(read.error());
     parts.push_back(std::move(part));
   }
-}
-
-// The place of each label among the parts.
-std::map<std::string, int> IndexParts(const std::vector<CategoryPart>& parts) {
-  std::map<std::string, int> indices;
-  for (const CategoryPart& part : parts) {
-    indices.emplace(part.label, static_cast<int>(indices.size()));
-  }
-  return indices;
 }
 
 // Pairs of labels stay so, wherever the labels stand now; those of a label that
@@ -340,7 +327,7 @@ std::vector<std::string> ReadFaceLabels(JsonFields& fields) {
 }
 
 Result<std::vector<std::string>> FaceLabelsFromJson(std::string_view text) {
-  GRASPDB_TRY(json, ParseJson(text, kFileLimits));
+  GRASPDB_TRY(json, ParseJson(text, kLabelLimits));
   JsonFields fields(json, "");
   std::vector<std::string> vocabulary;
   fields.Read("labels", vocabulary);

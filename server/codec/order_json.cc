@@ -11,9 +11,6 @@
 namespace graspdb {
 namespace {
 
-// Labels of every face make an order large.
-constexpr JsonLimits kOrderLimits{64 << 20, 64, 1'300'000};
-
 void ReadParameters(JsonFields& fields, Parameters& parameters) {
   const Json* json = fields.Find("parameters");
   if (json == nullptr) return;
@@ -72,7 +69,7 @@ ImportOrder ReadImportOrder(JsonFields& fields, std::string payload) {
   fields.Read("face_labels", order.face_labels);  // There in older jobs.
   fields.ReadInteger("labels_bytes", labels_bytes, 0,
                      static_cast<int>(std::min<size_t>(
-                         payload.size(), kOrderLimits.max_bytes)));
+                         payload.size(), kLabelLimits.max_bytes)));
   fields.ReadSeed("seed", order.seed);
   fields.Read("learn", order.learn);
   if (labels_bytes > 0) {
@@ -186,7 +183,7 @@ auto ReadOrder(const std::string& text, const JsonLimits& limits, F&& read)
 }  // namespace
 
 Result<SegmentOrder> SegmentOrderFromJson(const std::string& text) {
-  return ReadOrder(text, kOrderLimits, ReadSegmentOrder);
+  return ReadOrder(text, kLabelLimits, ReadSegmentOrder);
 }
 
 Result<VerifyOrder> VerifyOrderFromJson(const std::string& text) {
@@ -258,13 +255,13 @@ std::string ToJson(const TransferOrder& order) {
 
 Result<ImportOrder> StoredImportOrderFromJson(const std::string& text,
                                               std::string payload) {
-  return ReadOrder(text, kOrderLimits, [&](JsonFields& fields) {
+  return ReadOrder(text, kLabelLimits, [&](JsonFields& fields) {
     return ReadImportOrder(fields, std::move(payload));
   });
 }
 
 Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text) {
-  return ReadOrder(text, kOrderLimits, [](JsonFields& fields) {
+  return ReadOrder(text, kLabelLimits, [](JsonFields& fields) {
     SegmentOrder order = ReadSegmentOrder(fields);
     fields.RequireText("object", order.object_id);
     fields.Read("cascade", order.cascade);
@@ -273,7 +270,7 @@ Result<SegmentOrder> StoredSegmentOrderFromJson(const std::string& text) {
 }
 
 Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text) {
-  return ReadOrder(text, kOrderLimits, [](JsonFields& fields) {
+  return ReadOrder(text, kLabelLimits, [](JsonFields& fields) {
     LearnOrder order = ReadLearnOrder(fields);
     fields.RequireText("object", order.object_id);
     return order;
@@ -282,7 +279,7 @@ Result<LearnOrder> StoredLearnOrderFromJson(const std::string& text) {
 
 Result<TransferOrder> StoredTransferOrderFromJson(const std::string& text,
                                                   std::string payload) {
-  return ReadOrder(text, kOrderLimits, [&](JsonFields& fields) {
+  return ReadOrder(text, kLabelLimits, [&](JsonFields& fields) {
     return ReadTransferOrder(fields, std::move(payload));
   });
 }

@@ -25,10 +25,10 @@ Error MakeFolderError(const std::string& path, const std::error_code& error) {
           "check its permissions"};
 }
 
-Error MakeWriteError() {
+Error MakeWriteError(int number) {
   return {
       ErrorCode::kStorage,
-      std::string("A backup cannot be written: ") + std::strerror(errno) + ".",
+      std::string("A backup cannot be written: ") + std::strerror(number) + ".",
       "make room"};
 }
 
@@ -109,13 +109,14 @@ Result<StoredBackup> BackupFolder::Add(const Store& store,
   const std::string draft = file + kUnfinished;
   GRASPDB_TRY_VOID(store.WriteBackup(draft, context));
   const auto sha256 = CalcFileSha256(draft);
+  if (!sha256) return MakeWriteError(errno);
   backup.bytes = static_cast<int64_t>(fs::file_size(draft, error));
-  if (!sha256 || error) return MakeWriteError();
+  if (error) return MakeWriteError(error.value());
   backup.sha256 = *sha256;
   // A backup counts when it has both; the checksum comes first.
   if (!WriteChecksum(file, backup) ||
       std::rename(draft.c_str(), file.c_str()) != 0 || !SyncToDisk(path_)) {
-    return MakeWriteError();
+    return MakeWriteError(errno);
   }
   GRASPDB_TRY_VOID(RemoveOldest(backup.name));
   return backup;

@@ -161,10 +161,7 @@ Result<void> CheckFaceLabels(const std::vector<std::string>& labels,
 
 Result<std::vector<int>> IndexLabels(const StoredCategory& category,
                                      const std::vector<std::string>& labels) {
-  std::map<std::string, int> indices;
-  for (const CategoryPart& part : category.parts) {
-    indices.emplace(part.label, static_cast<int>(indices.size()));
-  }
+  const std::map<std::string, int> indices = IndexParts(category.parts);
   std::vector<int> indexed;
   indexed.reserve(labels.size());
   for (const std::string& label : labels) {

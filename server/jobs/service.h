@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/admission/mesh_format.h"
 #include "engine/base/execution_context.h"
 #include "engine/base/result.h"
 #include "engine/parameters/parameters.h"
@@ -55,7 +56,7 @@ struct AddedHand {
 struct ServiceOptions {
   int threads{0};  ///< Of the engine; 0: as many as there are cores.
   int64_t max_mesh_bytes{kMostFileBytes};
-  int64_t max_triangles{400'000};
+  int64_t max_triangles{MeshLimits{}.max_triangles};
   int64_t max_queued_jobs{100};  ///< Beyond it new ones are refused.
   int max_backups{10};           ///< Older ones are removed.
 };

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostServed = 400'000;  // Triangles that a server takes.
+constexpr int kMostServed = MeshLimits{}.max_triangles;
 
 std::string FindProcessor() {
   std::ifstream file("/proc/cpuinfo");
