@@ -167,6 +167,13 @@ Result<std::string> Service::CheckDecoder() const { return decoder_->Check(); }
 
 DecodeCounts Service::CountDecoded() const { return decoder_->counts(); }
 
+std::map<std::string, CacheCounts> Service::CountCaches() const {
+  return {{"hands", hands_.counts()},
+          {"hand_shapes", hand_shapes_.counts()},
+          {"whole_solids", whole_solids_.counts()},
+          {"descriptors", descriptors_.counts()}};
+}
+
 Result<AddedCategory> Service::AddCategory(const StoredCategory& category) {
   GRASPDB_TRY_VOID(CheckCategory(category));
   return store_->InsertCategory(category);

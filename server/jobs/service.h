@@ -104,6 +104,8 @@ class Service {
   /** Whether meshes can be decoded, and how the helper is confined. */
   Result<std::string> CheckDecoder() const;
   DecodeCounts CountDecoded() const;
+  /** Of what is kept in memory, by name. */
+  std::map<std::string, CacheCounts> CountCaches() const;
   /** In the folder DATABASE.backups. */
   BackupFolder& backups() { return backups_; }
 

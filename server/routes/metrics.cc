@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -91,6 +93,10 @@ Result<std::string> WriteStore(const Store& store) {
   text += WriteMetricHead("graspdb_database_log_bytes", "gauge",
                           "Size of the database's write-ahead log.");
   text += fmt::format("graspdb_database_log_bytes {}\n", none ? 0 : log);
+  text += WriteMetricHead("graspdb_database_memory_bytes", "gauge",
+                          "What the database keeps in memory.");
+  text +=
+      fmt::format("graspdb_database_memory_bytes {}\n", Store::CalcMemory());
   return text;
 }
 
@@ -100,20 +106,22 @@ std::string WriteHeld(const WorkSlots& threads) {
          fmt::format("graspdb_http_held_threads {}\n", threads.taken());
 }
 
-std::string WriteCache(const CacheCounts& counts) {
-  return WriteMetricHead("graspdb_cache_lookups_total", "counter",
-                         "Whether a grasp's text was remembered.") +
-         fmt::format(
-             "graspdb_cache_lookups_total{{cache=\"grasp_texts\",end=\"hit\"}} "
-             "{}\n"
-             "graspdb_cache_lookups_total{{cache=\"grasp_texts\",end=\"miss\"}}"
-             " "
-             "{}\n",
-             counts.hits, counts.misses) +
-         WriteMetricHead("graspdb_cache_bytes", "gauge",
-                         "What the remembered texts take.") +
-         fmt::format("graspdb_cache_bytes{{cache=\"grasp_texts\"}} {}\n",
-                     counts.bytes);
+std::string WriteCaches(const std::map<std::string, CacheCounts>& caches) {
+  std::string lookups = WriteMetricHead("graspdb_cache_lookups_total",
+                                        "counter", "Whether it was there.");
+  std::string bytes = WriteMetricHead("graspdb_cache_bytes", "gauge",
+                                      "What is remembered takes, about.");
+  for (const auto& [name, counts] : caches) {
+    for (const auto& [end, count] :
+         {std::pair("hit", counts.hits), std::pair("miss", counts.misses)}) {
+      lookups += fmt::format(
+          "graspdb_cache_lookups_total{{cache=\"{}\",end=\"{}\"}} {}\n", name,
+          end, count);
+    }
+    bytes += fmt::format("graspdb_cache_bytes{{cache=\"{}\"}} {}\n", name,
+                         counts.bytes);
+  }
+  return lookups + bytes;
 }
 
 Result<HttpResponse> GetMetrics(const Service& service,
@@ -121,6 +129,8 @@ Result<HttpResponse> GetMetrics(const Service& service,
                                 const HttpRequest& request) {
   GRASPDB_TRY_VOID(QueryReader(request.query).Finish());
   GRASPDB_TRY(store, WriteStore(service.store()));
+  auto caches = service.CountCaches();
+  caches["grasp_texts"] = options.grasp_texts->counts();
   HttpResponse response;
   response.content_type = "text/plain; version=0.0.4; charset=utf-8";
   response.body =
@@ -129,8 +139,8 @@ Result<HttpResponse> GetMetrics(const Service& service,
       (options.metrics ? options.metrics->Write() : "") +
       WriteHeld(*options.held_threads) +
       (options.jobs ? options.jobs->Write() : "") + store +
-      WriteDecoder(service.CountDecoded()) +
-      WriteCache(options.grasp_texts->counts()) + WriteProcess();
+      WriteDecoder(service.CountDecoded()) + WriteCaches(caches) +
+      WriteProcess();
   return response;
 }
 

@@ -254,6 +254,8 @@ std::string Database::QueryText(const std::string& sql) {
 
 int64_t Database::Changes() const { return sqlite3_changes64(handle_); }
 
+int64_t Database::CalcMemory() { return sqlite3_memory_used(); }
+
 bool Database::InTransaction() const {
   return sqlite3_get_autocommit(handle_) == 0;
 }

@@ -131,6 +131,8 @@ class Database {
   /** How many rows the last statement changed. */
   int64_t Changes() const;
   bool InTransaction() const;
+  /** What SQLite holds in memory for all databases of this process, bytes. */
+  static int64_t CalcMemory();
   /** Statements end with kCancelled soon after the context is cancelled, which
    must outlive them. */
   void Heed(const ExecutionContext& context);

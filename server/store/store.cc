@@ -206,6 +206,8 @@ Result<StoreCounts> Store::Count() const {
   return impl_->Read([](Database& database) { return CountRows(database); });
 }
 
+int64_t Store::CalcMemory() { return Database::CalcMemory(); }
+
 Result<int64_t> Store::CalcSize() const {
   return impl_->Read([](Database& database) {
     return database.QueryInt("PRAGMA page_count") *

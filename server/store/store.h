@@ -238,6 +238,8 @@ class Store {
                            const ExecutionContext& context = {}) const;
   /** The size of the database without its log, bytes. */
   Result<int64_t> CalcSize() const;
+  /** What the databases of this process hold in memory, bytes. */
+  static int64_t CalcMemory();
   /** Reads every page, key and blob. */
   Result<CheckReport> Check() const;
 

@@ -83,7 +83,9 @@ def test_metrics_are_prometheus_text(contract):
     assert samples["process_resident_memory_bytes", None] > 1e6
     assert samples["graspdb_database_bytes", None] > 4096
     assert samples["graspdb_stored", 'what="hands"'] >= 1
-    assert samples["graspdb_cache_bytes", 'cache="grasp_texts"'] >= 0
+    for cache in ("grasp_texts", "hands", "hand_shapes", "whole_solids", "descriptors"):
+        assert samples["graspdb_cache_bytes", f'cache="{cache}"'] >= 0
+    assert samples["graspdb_database_memory_bytes", None] > 4096
 
 
 def test_the_contract_served_is_the_file(contract):
