@@ -1,6 +1,21 @@
 #include "server/category.h"
 
 namespace graspdb {
+namespace {
+
+// The labels of the parts whose notes name a task.
+std::vector<std::string> FindParts(
+    const StoredCategory& category,
+    std::map<std::string, std::string> CategoryPart::*notes,
+    const std::string& task) {
+  std::vector<std::string> labels;
+  for (const CategoryPart& part : category.parts) {
+    if ((part.*notes).contains(task)) labels.push_back(part.label);
+  }
+  return labels;
+}
+
+}  // namespace
 
 PartVocabulary MakeVocabulary(const StoredCategory& category) {
   PartVocabulary vocabulary;
@@ -13,20 +28,12 @@ PartVocabulary MakeVocabulary(const StoredCategory& category) {
 
 std::vector<std::string> FindPartsForTask(const StoredCategory& category,
                                           const std::string& task) {
-  std::vector<std::string> labels;
-  for (const CategoryPart& part : category.parts) {
-    if (part.tasks.contains(task)) labels.push_back(part.label);
-  }
-  return labels;
+  return FindParts(category, &CategoryPart::tasks, task);
 }
 
 std::vector<std::string> FindPartsKeptFree(const StoredCategory& category,
                                            const std::string& task) {
-  std::vector<std::string> labels;
-  for (const CategoryPart& part : category.parts) {
-    if (part.keep_free.contains(task)) labels.push_back(part.label);
-  }
-  return labels;
+  return FindParts(category, &CategoryPart::keep_free, task);
 }
 
 std::map<std::string, int> IndexParts(const std::vector<CategoryPart>& parts) {

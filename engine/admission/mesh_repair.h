@@ -33,6 +33,7 @@ inline constexpr std::size_t kMostWrapPoints = 13'000;
  included. A mesh that needs nothing keeps its vertices and faces in their
  order, exactly. The result is closed, outward, connected and does not cross
  itself.
+ @param most_wrap_points  At least 1,000: the coarsest wrap takes some, too.
  @retval kUnusableInput when no solid can be made: no faces, coordinates that
    are not finite, zero area, all points in one plane (thinner than 1/10,000 of
    the diagonal), no volume enclosed, several solids apart from each other. */

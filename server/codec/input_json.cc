@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "server/codec/json.h"
+#include "server/codec/label_limits.h"
 #include "server/codec/parameters_json.h"
 
 namespace graspdb {

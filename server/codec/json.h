@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "engine/admission/mesh_format.h"
 #include "engine/base/result.h"
 
 namespace graspdb {
@@ -24,10 +23,6 @@ struct JsonLimits {
   int max_depth{64};
   size_t max_values{100'000};  ///< At all depths: "[]," takes fifty bytes.
 };
-
-inline constexpr uint64_t kMostFaces = MeshLimits{}.max_triangles;
-/** Where each face may have its label, as ranges of three values at worst. */
-inline constexpr JsonLimits kLabelLimits{64 << 20, 64, 3 * kMostFaces + 1000};
 
 /** The only way in for JSON that others wrote. Refuses what RFC 8259 does not
  allow and what is dangerous: more than max_depth nested brackets, duplicate

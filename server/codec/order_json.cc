@@ -6,6 +6,7 @@
 
 #include "server/codec/input_json.h"
 #include "server/codec/json.h"
+#include "server/codec/label_limits.h"
 #include "server/codec/parameters_json.h"
 
 namespace graspdb {
