@@ -12,19 +12,18 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
-#include <CGAL/Polygon_mesh_processing/compute_normal.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/manifoldness.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Polygon_mesh_processing/polygon_mesh_to_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polygon_mesh_processing/stitch_borders.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/alpha_wrap_3.h>
 #include <fmt/core.h>
 
 #include "engine/admission/soup_cleaning.h"
@@ -40,12 +39,6 @@ using SurfaceMesh = CGAL::Surface_mesh<Point>;
 using Face = SurfaceMesh::Face_index;
 using Halfedge = SurfaceMesh::Halfedge_index;
 
-// Lengths as shares of the diagonal of the soup's box.
-constexpr double kWrapAlpha = 1.0 / 75.0;
-constexpr double kWrapOffset = 1.0 / 1000.0;
-constexpr double kCoarsening = 3.0;  // Of a wrap of too many points.
-// The share of the offset that is taken back after wrapping.
-constexpr double kShrinking = 0.8;
 // A share of the diagonal cubed.
 constexpr double kSmallestVolume = 1e-6;
 // A shell whose caps have more than this share of its own area is a sheet.
@@ -70,8 +63,6 @@ struct Soup {
   std::vector<TriangleSoup::Face> faces;
 };
 
-Eigen::Vector3d ToEigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
-
 Soup ToSoup(const TriangleSoup& plain) {
   Soup soup{{}, plain.faces};
   for (const Eigen::Vector3d& p : plain.points) {
@@ -86,33 +77,23 @@ SurfaceMesh ToSurfaceMesh(const Soup& soup) {
   return surface;
 }
 
-void AppendTo(Soup& soup, const SurfaceMesh& surface) {
-  std::vector<std::size_t> index(surface.num_vertices() +
-                                 surface.number_of_removed_vertices());
-  for (const auto v : surface.vertices()) {
-    index[v] = soup.points.size();
-    soup.points.push_back(surface.point(v));
+TriangleSoup ToPlainSoup(const SurfaceMesh& surface) {
+  Soup soup;
+  pmp::polygon_mesh_to_polygon_soup(surface, soup.points, soup.faces);
+  TriangleSoup plain{{}, std::move(soup.faces)};
+  for (const Point& p : soup.points) {
+    plain.points.emplace_back(p.x(), p.y(), p.z());
   }
-  for (const Face f : surface.faces()) {
-    std::array<std::size_t, 3> face{};
-    int k = 0;
-    for (const auto v : vertices_around_face(surface.halfedge(f), surface)) {
-      face[k++] = index[v];
-    }
-    soup.faces.push_back(face);
-  }
+  return plain;
 }
 
 TriangleMesh ToTriangleMesh(const SurfaceMesh& surface) {
-  Soup soup;
-  AppendTo(soup, surface);
-  std::vector<Eigen::Vector3d> vertices;
-  for (const Point& p : soup.points) vertices.push_back(ToEigen(p));
+  TriangleSoup soup = ToPlainSoup(surface);
   std::vector<Eigen::Vector3i> triangles;
   for (const auto& face : soup.faces) {
     triangles.emplace_back(face[0], face[1], face[2]);
   }
-  return TriangleMesh(std::move(vertices), std::move(triangles));
+  return TriangleMesh(std::move(soup.points), std::move(triangles));
 }
 
 std::size_t CountShells(const SurfaceMesh& surface) {
@@ -365,61 +346,6 @@ std::optional<SurfaceMesh> Assemble(const MendedShells& mended,
   return whole;
 }
 
-// The wrap moved inwards by a distance, so that it lies where the mesh is; the
-// wrap itself where that would make it cross itself.
-SurfaceMesh Shrink(const SurfaceMesh& wrap, double distance) {
-  SurfaceMesh shrunk = wrap;
-  for (const auto v : wrap.vertices()) {
-    const Kernel::Vector_3 normal = pmp::compute_vertex_normal(v, wrap);
-    shrunk.point(v) = wrap.point(v) - distance * normal;
-  }
-  return pmp::does_self_intersect(shrunk) ? wrap : shrunk;
-}
-
-struct TooManyPoints {};
-
-/** Ends a wrap that takes too many points. The library calls it at each step;
- its own visitor does nothing. */
-struct PointCounter : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
-  template <class Wrapper, class Vertex>
-  void after_Steiner_point_insertion(const Wrapper&, Vertex) {
-    if (++points > most) throw TooManyPoints();
-  }
-  std::size_t most{0};
-  std::size_t points{0};
-};
-
-std::optional<SurfaceMesh> TryWrap(const Soup& soup, double alpha,
-                                   double offset, std::size_t most_points) {
-  SurfaceMesh wrap;
-  PointCounter counter;
-  counter.most = most_points;
-  try {
-    CGAL::alpha_wrap_3(soup.points, soup.faces, alpha, offset, wrap,
-                       CGAL::parameters::default_values(),
-                       CGAL::parameters::visitor(counter));
-  } catch (const TooManyPoints&) {
-    return std::nullopt;
-  }
-  return Shrink(wrap, kShrinking * offset);
-}
-
-SurfaceMesh Wrap(const SurfaceMesh& surface, double diagonal,
-                 std::size_t most_points, RepairLog& log) {
-  Soup soup;
-  AppendTo(soup, surface);
-  for (double coarseness = 1.0;; coarseness *= kCoarsening) {
-    const double alpha = coarseness * kWrapAlpha * diagonal;
-    const double offset = coarseness * kWrapOffset * diagonal;
-    auto wrap = TryWrap(soup, alpha, offset, most_points);
-    if (!wrap) continue;
-    log.Add(fmt::format("wrapped {}, closing gaps of up to {:.2g} mm",
-                        DescribeCount(soup.faces.size(), "face", "faces"),
-                        1e3 * alpha));
-    return *std::move(wrap);
-  }
-}
-
 Error MakeError(std::string message,
                 std::string hint =
                     "Check the mesh in a mesh editor; a closed"
@@ -468,8 +394,9 @@ Result<RepairedMesh> Repair(const TriangleMesh& mesh,
   auto mended = Mend(ToSoup(soup), diagonal, log, &rest);
   if (!mended ||
       CalcLostExtent(mended->solid, mesh) > kMostLostExtent * diagonal) {
-    Mended wrapped{Wrap(rest.solid, diagonal, most_wrap_points, rest.log),
-                   rest.log};
+    Mended wrapped = std::move(rest);
+    wrapped.solid = ToSurfaceMesh(ToSoup(WrapSurface(
+        ToPlainSoup(wrapped.solid), diagonal, most_wrap_points, wrapped.log)));
     const bool in_one_piece = CountShells(wrapped.solid) == 1;
     if (!in_one_piece && !mended &&
         !DropFragments(wrapped.solid, wrapped.log)) {

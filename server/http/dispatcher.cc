@@ -63,18 +63,20 @@ Dispatcher::Answer Dispatcher::Dispatch(const Request& request) {
     response.headers.emplace_back("Allow", allowed);
     return {std::move(response), ""};
   }
-  if (request.turned_away && !match.route->vital) {
-    return {MakeProblem({ErrorCode::kOverloaded,
-                         "More connections wait than can be served.",
-                         "wait as long as Retry-After says"},
-                        id),
-            kTurnedAwayRoute};
-  }
+  if (request.turned_away && !match.route->vital) return TurnAway(id);
   decoded.path_parameters = std::move(match.path_parameters);
   decoded.query = target->query;
   decoded.headers = request.head.fields;
   decoded.stop = request.stop;
   return {Call(*match.route, request, decoded), match.route->pattern};
+}
+
+Dispatcher::Answer Dispatcher::TurnAway(const std::string& id) {
+  return {MakeProblem({ErrorCode::kOverloaded,
+                       "More connections wait than can be served.",
+                       "wait as long as Retry-After says"},
+                      id),
+          kTurnedAwayRoute};
 }
 
 HttpResponse Dispatcher::Call(const Route& route, const Request& request,

@@ -41,6 +41,8 @@ class Dispatcher {
   /** Never throws what a handler throws: that is a 500 which tells nothing but
    the request's id. */
   Answer Dispatch(const Request& request);
+  /** What everyone is told for whom there is no thread. */
+  static Answer TurnAway(const std::string& id);
 
   /** Tells the log of a bug. @param id  Of the request, or "". */
   void LogInternal(const std::string& id, const std::string& cause) const;

@@ -34,6 +34,7 @@ struct Exchange {
   Connection* connection{nullptr};
   MessageHead head;
   std::optional<HeadFault> fault;  ///< Instead of the head.
+  bool unheard{false};  ///< Turned away before it said what it wants.
   std::string id;
   std::string pattern;  ///< Of the route that answered.
   Clock::time_point begin{Clock::now()};
@@ -138,8 +139,8 @@ enum class Welcome { kServed, kTurnedAway, kDropped };
 thread_local Welcome current_welcome = Welcome::kServed;
 
 /** The threads that serve connections and the line of those that wait for one.
- When it is long the next are told so by a thread of its own, and when that has
- too much to do, too, they are closed without a word. */
+ When it is long the next are told so by another thread, and when that has too
+ much to do, too, they are closed without a word. */
 class ConnectionQueue final : public httplib::TaskQueue {
  public:
   /** @param line  How many may wait, and how many to be turned away. */
@@ -306,11 +307,13 @@ void HttpServer::Impl::ServeConnection(socket_t socket) {
   }
   Connection connection(socket, stop_fd, limits);
   for (size_t count = 1;; ++count) {
-    if (!AwaitMessage(connection, limits.idle_timeout)) break;
-    auto head = connection.ReadHead();
+    const bool unheard = !AwaitMessage(connection, limits.idle_timeout);
+    if (unheard && !turned_away) break;
+    auto head = unheard ? MessageHead() : connection.ReadHead();
     if (std::holds_alternative<Connection::Closed>(head)) break;
     Exchange exchange;
     exchange.connection = &connection;
+    exchange.unheard = unheard;
     if (const auto* fault = std::get_if<HeadFault>(&head)) {
       exchange.fault = *fault;
       exchange.close = true;
@@ -409,6 +412,11 @@ void HttpServer::Impl::Answer(const httplib::ContentReader* reader,
 
 HttpResponse HttpServer::Impl::Respond(Exchange& exchange,
                                        const httplib::ContentReader* reader) {
+  if (exchange.unheard) {
+    auto answer = Dispatcher::TurnAway(exchange.id);
+    exchange.pattern = std::move(answer.pattern);
+    return std::move(answer.response);
+  }
   if (exchange.fault) {
     return MakeProblem(exchange.fault->fault, exchange.fault->detail, "",
                        exchange.id);

@@ -394,6 +394,9 @@ TEST_F(HttpServerTest, BeyondTheLineOfThoseThatWaitTheNextIsToldToComeLater) {
   EXPECT_THAT(answer, HasSubstr("X-Request-Id: "));
   EXPECT_THAT(answer, HasSubstr("Connection: close\r\n"));
   EXPECT_THAT(answer, HasSubstr("More connections wait than can be served"));
+  // Also to one that does not ask in time.
+  EXPECT_THAT(RawClient(port_).ReadAll(),
+              StartsWith("HTTP/1.1 503 Service Unavailable\r\n"));
   // Whether it lives is told all the same.
   EXPECT_THAT(Get("/alive"), StartsWith("HTTP/1.1 200 OK\r\n"));
   // And when there is no time for that either, nothing is, soon.
