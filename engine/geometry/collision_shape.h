@@ -11,6 +11,7 @@ namespace graspdb {
  intersect. Immutable, shared by threads. */
 class CollisionShape {
  public:
+  /** @pre The mesh has a face. */
   explicit CollisionShape(const TriangleMesh& mesh_A);
   ~CollisionShape();
   CollisionShape(CollisionShape&&) noexcept;
@@ -20,6 +21,11 @@ class CollisionShape {
    wholly inside the other one is not seen. */
   bool Intersects(const CollisionShape& other,
                   const RigidTransform& X_AB) const;
+
+  /** The same by FCL's own search, which takes four times as long: what
+   Intersects() is tested and measured against. */
+  bool IntersectsByFcl(const CollisionShape& other,
+                       const RigidTransform& X_AB) const;
 
   /** The least distance, m, between a triangle of this surface A and one of the
    other, B; 0 where they meet. Takes tenths of milliseconds. */

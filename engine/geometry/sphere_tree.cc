@@ -41,13 +41,14 @@ SphereTree::SphereTree(const TriangleMesh& mesh_L, double spacing) {
 }
 
 double SphereTree::CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
-                                double enough) const {
+                                const DistanceRange& range) const {
   struct Pair {
     int a, b;
     double bound;
   };
-  double best = 1e300;
-  std::vector<Pair> stack;
+  double best = range.most;
+  Pair stack[2 * kStackSize];
+  int size = 0;
   const auto enter = [&](int a, int b) {
     const Ball& ball_A = BallOf(a);
     const Ball& ball_B = B.BallOf(b);
@@ -57,13 +58,12 @@ double SphereTree::CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
     if ((IsLeaf(a) && IsLeaf(b)) || radii <= 0.5 * apart) {
       best = std::min(best, apart - radii);
     } else if (apart - radii < best) {
-      stack.push_back({a, b, apart - radii});
+      stack[size++] = {a, b, apart - radii};
     }
   };
   enter(0, 0);
-  while (!stack.empty() && best >= enough) {
-    const Pair top = stack.back();
-    stack.pop_back();
+  while (size > 0 && best >= range.enough) {
+    const Pair top = stack[--size];
     if (top.bound >= best) continue;
     const bool split_A =
         IsLeaf(top.b) ||

@@ -61,10 +61,10 @@ class SphereTree {
     });
   }
 
-  /** A lower bound of the gap between this surface A and another one, B. Once
-   it is known to be below `enough`, any value below that is returned. */
+  /** A lower bound of the gap between this surface A and another one, B, within
+   the range. */
   double CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
-                      double enough) const;
+                      const DistanceRange& range = {}) const;
 
   /** Calls visit(p_L, distance) for each probe no farther than `limit`, in
    order. @returns a lower bound of how far all others are. */

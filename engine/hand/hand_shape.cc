@@ -124,9 +124,9 @@ int EstimateCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
 
 double CalcLinkGapBound(const HandShape& hand, int link_A, int link_B,
                         const std::vector<RigidTransform>& X_HL,
-                        double enough) {
+                        const DistanceRange& range) {
   return hand.link(link_A)->tree.CalcGapBound(
-      hand.link(link_B)->tree, X_HL[link_A].Inverse() * X_HL[link_B], enough);
+      hand.link(link_B)->tree, X_HL[link_A].Inverse() * X_HL[link_B], range);
 }
 
 bool LinksCollide(const HandShape& hand, int link_A, int link_B,
@@ -134,9 +134,7 @@ bool LinksCollide(const HandShape& hand, int link_A, int link_B,
   const LinkShape& A = *hand.link(link_A);
   const LinkShape& B = *hand.link(link_B);
   const RigidTransform X_AB = X_HL[link_A].Inverse() * X_HL[link_B];
-  const double reach = A.tree.radius() + B.tree.radius();
-  return (X_AB * B.tree.center() - A.tree.center()).squaredNorm() <=
-             reach * reach &&
+  return A.tree.CalcGapBound(B.tree, X_AB, kSign) <= 0.0 &&
          A.shape.Intersects(B.shape, X_AB);
 }
 

@@ -77,12 +77,14 @@ int EstimateCollidingLink(const HandShape& hand, const RigidTransform& X_OH,
 std::optional<std::pair<int, int>> FindSelfCollision(
     const HandShape& hand, const std::vector<RigidTransform>& X_HL);
 
-/** A proven lower bound, m, of the gap between two links of the hand. Once it
- is known to be below `enough`, any value below that is returned. */
+/** A proven lower bound, m, of the gap between two links of the hand; within
+ the range. */
 double CalcLinkGapBound(const HandShape& hand, int link_A, int link_B,
-                        const std::vector<RigidTransform>& X_HL, double enough);
+                        const std::vector<RigidTransform>& X_HL,
+                        const DistanceRange& range = {});
 
-/** True when two links of the hand penetrate each other. */
+/** True when two links of the hand penetrate each other. The trees of balls
+ decide what they can prove, FCL the rest. */
 bool LinksCollide(const HandShape& hand, int link_A, int link_B,
                   const std::vector<RigidTransform>& X_HL);
 

@@ -79,8 +79,8 @@ class Sweep {
     for (LinkPair& pair : pairs_) {
       const double fine = fine_step_ / pair.speed;
       if (pair.certainly_free < t + fine) {
-        const double gap =
-            CalcLinkGapBound(hand_, pair.a, pair.b, X_HL, fine_step_);
+        const double gap = CalcLinkGapBound(hand_, pair.a, pair.b, X_HL,
+                                            {.enough = fine_step_});
         if (gap < fine_step_) near_pairs_.push_back(pair);
         pair.certainly_free = t + std::max(gap / pair.speed, fine);
       }

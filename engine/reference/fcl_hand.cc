@@ -12,7 +12,7 @@ constexpr int kBisections = 8;
 bool LinkMeets(const HandShape& hand, int link, const RigidTransform& X_OL,
                const Solid& solid) {
   return hand.link(link) &&
-         solid.shape().Intersects(hand.link(link)->shape, X_OL);
+         solid.shape().IntersectsByFcl(hand.link(link)->shape, X_OL);
 }
 
 // Whether any link from the k-th joint of an actuator's chain on meets it.
@@ -51,7 +51,8 @@ bool CollidesWithItselfByFcl(const HandShape& hand,
     if (!hand.link(a) || !hand.link(b)) continue;
     const RigidTransform X_AB =
         X_HL[static_cast<size_t>(a)].Inverse() * X_HL[static_cast<size_t>(b)];
-    if (hand.link(a)->shape.Intersects(hand.link(b)->shape, X_AB)) return true;
+    if (hand.link(a)->shape.IntersectsByFcl(hand.link(b)->shape, X_AB))
+      return true;
   }
   return false;
 }

@@ -104,9 +104,11 @@ TEST_F(TreeOfABox, GapBoundOfTwoNeverExceedsTheTruth) {
       }
     }
     truth = std::sqrt(truth);
-    const double bound = tree_.CalcGapBound(tree_, X_AB, -1.0);
+    const double bound = tree_.CalcGapBound(tree_, X_AB);
     EXPECT_LE(bound, truth);
     EXPECT_GE(bound, 0.5 * truth - 0.02);
+    // Whether it is positive does not depend on the range.
+    EXPECT_EQ(tree_.CalcGapBound(tree_, X_AB, {0.0, 1e-9}) > 0.0, bound > 0.0);
   }
 }
 

@@ -40,7 +40,7 @@ TEST(HandShape, FilteredTestAgreesWithFclAndContainmentAlone) {
                               0.09 * random.NextInUnitBall()};
     const LinkShape& link = *hand.link(1 + i % 8);
     const bool exact =
-        box.shape().Intersects(link.shape, X_OL) ||
+        box.shape().IntersectsByFcl(link.shape, X_OL) ||
         box.index().CalcSignedDistance(X_OL * link.mesh_L.vertices()[0]) < 0;
     EXPECT_EQ(LinkCollides(link, X_OL, box), exact) << i;
     hits += exact;

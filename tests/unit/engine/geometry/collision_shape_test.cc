@@ -1,0 +1,66 @@
+#include "engine/geometry/collision_shape.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.h"
+#include "tests/support/workshop.h"
+
+namespace graspdb {
+namespace {
+
+RigidTransform Turn(double angle, const Eigen::Vector3d& axis) {
+  return {Eigen::AngleAxisd(angle, axis).toRotationMatrix(),
+          Eigen::Vector3d::Zero()};
+}
+
+RigidTransform Shift(const Eigen::Vector3d& p) {
+  return {Eigen::Matrix3d::Identity(), p};
+}
+
+class TwoBoxes : public ::testing::Test {
+ protected:
+  const CollisionShape a_{workshop::MakeBox({0.02, 0.02, 0.02})};
+  const CollisionShape b_{workshop::MakeBox({0.04, 0.04, 0.04})};
+};
+
+TEST_F(TwoBoxes, MeetUntilTheirFacesAreApart) {
+  EXPECT_TRUE(a_.Intersects(b_, Shift({0.0299, 0.001, 0.002})));
+  EXPECT_FALSE(a_.Intersects(b_, Shift({0.0301, 0.001, 0.002})));
+  EXPECT_FALSE(b_.Intersects(a_, Shift({0.0, 0.001, -0.0301})));
+}
+
+TEST_F(TwoBoxes, MeetUntilTwoEdgesAreApart) {
+  // A's edge along x below B's along y: sqrt(2) of half a side from the middle.
+  const double touch = std::sqrt(2.0) * (0.01 + 0.02);
+  const RigidTransform X_AW = Turn(-M_PI / 4.0, Eigen::Vector3d::UnitX());
+  const RigidTransform X_B = Turn(M_PI / 4.0, Eigen::Vector3d::UnitY());
+  EXPECT_TRUE(a_.Intersects(b_, X_AW * (Shift({0, 0, touch - 1e-4}) * X_B)));
+  EXPECT_FALSE(a_.Intersects(b_, X_AW * (Shift({0, 0, touch + 1e-4}) * X_B)));
+}
+
+TEST_F(TwoBoxes, DoNotMeetWhenOneIsWhollyInside) {
+  EXPECT_FALSE(a_.Intersects(b_, Shift({0.001, 0.002, 0.003})));
+}
+
+TEST(CollisionShape, MeetsWhereFclSaysSo) {
+  const CollisionShape mug(workshop::LoadMug("latte").mesh_O);
+  const CollisionShape box(workshop::MakeBox({0.02, 0.03, 0.05}, 4));
+  Random random(1);
+  int meets = 0;
+  constexpr int kPoses = 4000;
+  for (int i = 0; i < kPoses; ++i) {
+    const RigidTransform X_MB{random.NextRotation(),
+                              0.09 * random.NextInUnitBall()};
+    const bool ours = mug.Intersects(box, X_MB);
+    EXPECT_EQ(ours, mug.IntersectsByFcl(box, X_MB));
+    EXPECT_EQ(ours, box.Intersects(mug, X_MB.Inverse()));
+    meets += ours;
+  }
+  EXPECT_GT(meets, kPoses / 4);
+  EXPECT_LT(meets, 3 * kPoses / 4);
+}
+
+}  // namespace
+}  // namespace graspdb
