@@ -10,9 +10,8 @@ Parameters MakePaperParameters() {
   Parameters p;
   p.segmentation.by_shape_diameter = true;
   p.active_learning.seed_samples = 30000;
-  p.active_learning.rounds = 1;
-  p.active_learning.queries_per_round = 10000;
-  p.active_learning.penalty = 1.0;
+  p.active_learning.rounds = 2;
+  p.active_learning.queries_per_round = 5000;
   p.swarm.aimed_share = 0.0;
   p.swarm.niches = false;
   p.swarm.hold_on_whole = false;
