@@ -15,7 +15,8 @@
 namespace graspdb {
 namespace {
 
-// What rounding may move a box's edge by, relative to the boxes.
+// Added to each cosine, as in FCL: across edges that are nearly parallel
+// nothing separates two boxes but rounding.
 constexpr double kRounding = 1e-6;
 
 // One of FCL's boxes around triangles.

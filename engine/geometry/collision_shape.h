@@ -22,7 +22,7 @@ class CollisionShape {
   bool Intersects(const CollisionShape& other,
                   const RigidTransform& X_AB) const;
 
-  /** The same by FCL's own search, which takes four times as long: what
+  /** The same by FCL's own search, which takes three times as long: what
    Intersects() is tested and measured against. */
   bool IntersectsByFcl(const CollisionShape& other,
                        const RigidTransform& X_AB) const;

@@ -47,7 +47,7 @@ double SphereTree::CalcGapBound(const SphereTree& B, const RigidTransform& X_AB,
     double bound;
   };
   double best = range.most;
-  Pair stack[2 * kStackSize];
+  Pair stack[2 * kStackSize];  // Siblings on the levels of both trees.
   int size = 0;
   const auto enter = [&](int a, int b) {
     const Ball& ball_A = BallOf(a);

@@ -1,8 +1,10 @@
 #include "engine/hand/finger_closing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "engine/base/contract.h"
 
@@ -269,7 +271,8 @@ class HandMotion {
   void AddFinger(int actuator, FingerPath path) {
     for (const int j : hand_.model().actuators()[actuator].joints) {
       const HandJoint& joint = hand_.model().joints()[j];
-      const double most = std::max(joint.ratio, joint.breakaway_ratio);
+      const double most =
+          std::max(std::abs(joint.ratio), joint.breakaway_ratio);
       for (LinkPair& pair : pairs_) {
         pair.speed += most * (hand_.motion_bound(pair.a, j) +
                               hand_.motion_bound(pair.b, j));

@@ -41,7 +41,7 @@ class Dispatcher {
   /** Never throws what a handler throws: that is a 500 which tells nothing but
    the request's id. */
   Answer Dispatch(const Request& request);
-  /** What everyone is told for whom there is no thread. */
+  /** The 503 for whom there is no thread. @param id  Of the request. */
   static Answer TurnAway(const std::string& id);
 
   /** Tells the log of a bug. @param id  Of the request, or "". */
