@@ -61,6 +61,8 @@ ClosingSimulation::ClosingSimulation(const HandShape& hand, const Solid& solid,
       ClosingJoint one;
       one.joint = j;
       one.is_first = j == actuator.joints.front();
+      one.sign = joint.closing_sign();
+      one.limit = joint.closing_limit();
       one.speed = joint.ratio * parameters.closing_speed * length;
       one.released_speed =
           joint.breakaway_ratio > 0.0
@@ -78,8 +80,8 @@ ClosingSimulation::ClosingSimulation(const HandShape& hand, const Solid& solid,
       one.armature = kArmature / (length * length);
       one.closing_torque = motors.closing_force * lever;
       one.holding_torque = motors.holding_force * lever;
-      near_ =
-          std::max(near_, kMargin * parameters.time_step * one.speed * lever);
+      near_ = std::max(
+          near_, kMargin * parameters.time_step * std::abs(one.speed) * lever);
       joints_.push_back(one);
     }
   }
@@ -181,7 +183,7 @@ class ClosingRun {
     double seconds = kLongestClosing;
     for (size_t k = 0; k < joints_.size(); ++k) {
       if (speeds_[k] == 0.0) continue;
-      const double left = Upper(joints_[k].joint) - state_.q[joints_[k].joint];
+      const double left = joints_[k].limit - state_.q[joints_[k].joint];
       seconds = std::min(seconds, left / speeds_[k]);
     }
     for (const Contacts& contacts : contacts_) {
@@ -214,17 +216,10 @@ class ClosingRun {
   double CalcTurningSpeed(int link) const {
     double speed = 0.0;
     for (const int k : simulation_.movers_[static_cast<size_t>(link)]) {
-      speed += speeds_[static_cast<size_t>(k)] *
+      speed += std::abs(speeds_[static_cast<size_t>(k)]) *
                hand_.motion_bound(link, joints_[static_cast<size_t>(k)].joint);
     }
     return speed;
-  }
-
-  double Upper(int joint) const {
-    return hand_.model().joints()[static_cast<size_t>(joint)].upper;
-  }
-  double Lower(int joint) const {
-    return hand_.model().joints()[static_cast<size_t>(joint)].lower;
   }
 
   // For one step. @returns whether any still turns.
@@ -239,16 +234,19 @@ class ClosingRun {
       const double q = state_.q[joint.joint];
       double& motor = state_.motors[i];
       speeds_[k] = 0.0;
-      if ((motor - q >= 0.99 * most_lead &&
-           state_.velocity[6 + i] < kStalled * joint.speed) ||
-          motor >= Upper(joint.joint)) {
+      if ((joint.sign * (motor - q) >= 0.99 * most_lead &&
+           joint.sign * state_.velocity[6 + i] <
+               kStalled * joint.sign * joint.speed) ||
+          joint.sign * (motor - joint.limit) >= 0.0) {
         blocked_[k] = true;
       }
       if (!blocked_[k]) {
         turns = true;
         speeds_[k] = before_blocked ? joint.released_speed : joint.speed;
-        motor = std::min({motor + speeds_[k] * parameters_.time_step,
-                          Upper(joint.joint), q + most_lead});
+        motor =
+            joint.sign *
+            std::min({joint.sign * (motor + speeds_[k] * parameters_.time_step),
+                      joint.sign * joint.limit, joint.sign * q + most_lead});
       }
       before_blocked = before_blocked || blocked_[k];
     }
@@ -395,7 +393,8 @@ class ClosingRun {
       const int j = joints_[k].joint;
       double& speed = state_.velocity[6 + static_cast<Eigen::Index>(k)];
       const double before = state_.q[j];
-      state_.q[j] = std::clamp(before + dt * speed, Lower(j), Upper(j));
+      const HandJoint& joint = hand_.model().joints()[static_cast<size_t>(j)];
+      state_.q[j] = std::clamp(before + dt * speed, joint.lower, joint.upper);
       if (state_.q[j] != before + dt * speed) speed = 0.0;
       for (int link = 0; link < hand_.model().num_links(); ++link) {
         finder_.Move(

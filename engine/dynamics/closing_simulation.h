@@ -62,7 +62,9 @@ class ClosingSimulation {
   // A joint that closes.
   struct ClosingJoint {
     int joint{0};
-    double speed{0.0};  // While the joint before it turns, rad/s or m/s
+    double sign{1.0};   // Of its closing: 1, or -1 if it mimics backwards.
+    double limit{0.0};  // Where it ends then, rad or m.
+    double speed{0.0};  // While the joint before it turns, rad/s or m/s …
     double released_speed{0.0};  // … and once that is blocked.
     double stiffness{0.0};       // N m/rad or N/m.
     double damping{0.0};

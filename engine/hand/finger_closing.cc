@@ -119,7 +119,7 @@ class FingerMarch {
         if (!hand_.link(link)) continue;
         double speed = 0.0;
         for (int i = 0; i <= k; ++i) {
-          speed += speed_[i] * hand_.motion_bound(link, chain_[i]);
+          speed += std::abs(speed_[i]) * hand_.motion_bound(link, chain_[i]);
         }
         if (speed > 0.0) movers_.push_back({link, k, speed, travel_, travel_});
       }
@@ -131,11 +131,10 @@ class FingerMarch {
   double FindLimitStep() const {
     double travel = kInfinity;
     for (size_t k = 0; k < chain_.size(); ++k) {
-      if (speed_[k] > 0.0) {
-        travel = std::min(
-            travel,
-            (model_.joints()[chain_[k]].upper - q_[chain_[k]]) / speed_[k]);
-      }
+      if (speed_[k] == 0.0) continue;
+      const HandJoint& joint = model_.joints()[chain_[k]];
+      travel =
+          std::min(travel, (joint.closing_limit() - q_[chain_[k]]) / speed_[k]);
     }
     return std::max(0.0, travel);
   }
@@ -324,7 +323,8 @@ class HandMotion {
       for (int link = 0; link < hand_.model().num_links(); ++link) {
         double bound = 0.0;
         for (const int j : hand_.model().actuators()[finger.actuator].joints) {
-          bound += hand_.motion_bound(link, j);
+          bound += std::max(1.0, std::abs(hand_.model().joints()[j].ratio)) *
+                   hand_.motion_bound(link, j);
         }
         speed = std::max(speed, bound);
       }

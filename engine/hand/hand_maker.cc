@@ -152,7 +152,14 @@ class HandBuilder {
         return Fault("breakaway of " + note.released_joint +
                      " has no ratio above 0");
       }
-      data_.joints[joint->second].breakaway_ratio = note.ratio;
+      HandJoint& released = data_.joints[joint->second];
+      if (released.ratio < 0.0) {
+        return Fault(
+            "breakaway of " + note.released_joint + ", which mimics backwards",
+            "turn its axis round in the URDF, and let it mimic "
+            "forwards");
+      }
+      released.breakaway_ratio = note.ratio;
     }
     return {};
   }

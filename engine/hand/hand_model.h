@@ -49,13 +49,19 @@ struct HandJoint {
   /** After the joint before it on the same actuator is blocked, this joint goes
    on at this multiple of the actuator's travel; 0 when it cannot. */
   double breakaway_ratio{0.0};
+
+  /** As its actuator closes, which is upwards: 1, or -1 if it mimics backwards.
+   */
+  double closing_sign() const { return ratio < 0.0 ? -1.0 : 1.0; }
+  /** Where it ends then, rad or m. */
+  double closing_limit() const { return ratio < 0.0 ? lower : upper; }
 };
 
 /** A motor: one or more coupled joints, proximal first. */
 struct HandActuator {
   std::string name;
   std::vector<int> joints;  ///< Proximal to distal; the first has ratio 1.
-  bool closes{false};       ///< Takes part in closing the fingers.
+  bool closes{false};       ///< Closes the hand as its position grows.
   double lower{0.0};        ///< Range of the first joint, rad or m.
   double upper{0.0};
 };

@@ -12,6 +12,9 @@ constexpr size_t kMostPieces = 64;
 constexpr size_t kLongestName = 200;
 constexpr double kLongest = 2.0;  // m
 constexpr double kTolerance = 1e-6;
+// Of a joint that mimics another, to that one's motion.
+constexpr double kLeastRatio = 0.01;
+constexpr double kMostRatio = 100.0;
 
 bool IsShort(const Eigen::Vector3d& p) {
   return p.allFinite() && p.norm() < kLongest;
@@ -43,7 +46,8 @@ Result<void> CheckJoint(const HandTree::Joint& joint) {
     return MakeHandError(its + " has no range of motion that a hand has");
   }
   if (joint.mimicked.size() > kLongestName ||
-      !(std::abs(joint.ratio) < 100.0)) {
+      !(std::abs(joint.ratio) >= kLeastRatio &&
+        std::abs(joint.ratio) < kMostRatio)) {
     return MakeHandError(its + " mimics another in no way that a hand does");
   }
   return {};

@@ -12,7 +12,7 @@ namespace {
 // A joint that contacts load.
 struct LoadedJoint {
   Eigen::Vector3d p_OJ;
-  Eigen::Vector3d axis_O;
+  Eigen::Vector3d axis_O;  // About, or along, which it closes.
   bool slides{false};
   double lever{1.0};  // To its farthest point, m.
   int joint{0};
@@ -37,7 +37,8 @@ std::vector<LoadedJoint> FindLoadedJoints(
     }
     const RigidTransform X_OJ =
         X_OH * X_HL[static_cast<size_t>(joint.child_link)];
-    LoadedJoint one{X_OJ.translation, X_OJ.rotation * joint.axis_J};
+    LoadedJoint one{X_OJ.translation,
+                    joint.closing_sign() * (X_OJ.rotation * joint.axis_J)};
     one.slides = joint.type == JointType::kPrismatic;
     one.joint = j;
     const std::vector<int>& chain =

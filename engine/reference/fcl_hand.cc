@@ -88,7 +88,8 @@ Eigen::VectorXd CloseFingersByFcl(const HandShape& hand,
           const HandJoint& joint = model.joints()[static_cast<size_t>(j)];
           const double ratio =
               first > 0 && k == first ? joint.breakaway_ratio : joint.ratio;
-          to[j] = std::min(joint.upper, from[j] + ratio * travel);
+          to[j] =
+              std::clamp(from[j] + ratio * travel, joint.lower, joint.upper);
         }
         return to;
       };

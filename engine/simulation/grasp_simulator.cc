@@ -275,11 +275,13 @@ struct GraspSimulator::Impl {
   bool Blocked(int j) const {
     const auto i = static_cast<size_t>(j);
     const HandJoint& joint = hand->joints()[i];
-    const double lead = data->ctrl[servos[i]] - data->qpos[joints[i]];
-    const bool stalls =
-        lead >= 0.99 * FindMostLead(j) &&
-        data->qvel[speeds[i]] < kStalled * joint.ratio * FindSpeed(joint);
-    return stalls || data->ctrl[servos[i]] >= joint.upper;
+    const double sign = joint.closing_sign();
+    const double lead = sign * (data->ctrl[servos[i]] - data->qpos[joints[i]]);
+    const bool stalls = lead >= 0.99 * FindMostLead(j) &&
+                        sign * data->qvel[speeds[i]] <
+                            kStalled * sign * joint.ratio * FindSpeed(joint);
+    return stalls ||
+           sign * (data->ctrl[servos[i]] - joint.closing_limit()) >= 0.0;
   }
 
   double FindSpeed(const HandJoint& joint) const {
@@ -309,10 +311,12 @@ struct GraspSimulator::Impl {
           const double ratio = inner_blocked && joint.breakaway_ratio > 0.0
                                    ? joint.breakaway_ratio
                                    : joint.ratio;
+          const double sign = joint.closing_sign();
+          const double next =
+              data->ctrl[servos[i]] + ratio * FindSpeed(joint) * test.time_step;
           data->ctrl[servos[i]] =
-              std::min({data->ctrl[servos[i]] +
-                            ratio * FindSpeed(joint) * test.time_step,
-                        joint.upper, data->qpos[joints[i]] + FindMostLead(j)});
+              sign * std::min({sign * next, sign * joint.closing_limit(),
+                               sign * data->qpos[joints[i]] + FindMostLead(j)});
         }
         inner_blocked = inner_blocked || blocked[i];
       }

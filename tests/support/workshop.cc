@@ -280,6 +280,37 @@ std::shared_ptr<const HandModel> MakeTwoJawGripper() {
   return std::make_shared<const HandModel>(std::move(data));
 }
 
+std::shared_ptr<const HandModel> TurnRound(const HandModel& hand,
+                                           const std::vector<int>& joints) {
+  HandModel::Data data;
+  data.name = hand.name();
+  data.links = hand.links();
+  data.joints = hand.joints();
+  data.actuators = hand.actuators();
+  data.contact_points = hand.contact_points();
+  data.approach_H = hand.approach_H();
+  data.closing_force = hand.closing_force();
+  for (HandJoint& joint : data.joints) joint.breakaway_ratio = 0.0;
+  for (const int j : joints) {
+    HandJoint& joint = data.joints[static_cast<size_t>(j)];
+    joint.axis_J = -joint.axis_J;
+    std::swap(joint.lower, joint.upper);
+    joint.lower = -joint.lower;
+    joint.upper = -joint.upper;
+    joint.ratio = -joint.ratio;
+  }
+  const auto& tested = hand.self_collision_pairs();
+  for (int b = 0; b < hand.num_links(); ++b) {
+    for (int a = 0; a < b; ++a) {
+      if (std::find(tested.begin(), tested.end(), std::pair(a, b)) ==
+          tested.end()) {
+        data.ignored_collisions.emplace_back(a, b);
+      }
+    }
+  }
+  return std::make_shared<const HandModel>(std::move(data));
+}
+
 int FindJoint(const HandModel& hand, const std::string& name) {
   for (int j = 0; j < hand.num_joints(); ++j) {
     if (hand.joints()[j].name == name) return j;

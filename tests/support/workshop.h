@@ -53,6 +53,11 @@ std::shared_ptr<const HandModel> LoadBarrettHand();
  apart when open, approaching along z. */
 std::shared_ptr<const HandModel> MakeTwoJawGripper();
 
+/** The hand with the axes of some joints turned round, so that they mimic
+ backwards: they are at -q where they were at q. No finger breaks away. */
+std::shared_ptr<const HandModel> TurnRound(const HandModel& hand,
+                                           const std::vector<int>& joints);
+
 /** The place of a joint among the hand's, -1 when it has none of that name. */
 int FindJoint(const HandModel& hand, const std::string& name);
 

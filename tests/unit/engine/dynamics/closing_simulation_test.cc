@@ -90,6 +90,20 @@ TEST_F(Pinch, HowFarTheJawsComeFromDoesNotMatter) {
   EXPECT_NEAR(far.turn, near.turn, 1e-3);
 }
 
+TEST_F(Pinch, AJawThatMimicsBackwardsHoldsAsItDoesForwards) {
+  const HandShape backwards(workshop::TurnRound(gripper_.model(), {1}));
+  const Eigen::Vector3d shift_H(0.004, 0.001, 0);
+  const ClosingOutcome turned =
+      ClosingSimulation(backwards, box_, HoldParameters(), MotorParameters())
+          .Run({Eigen::Matrix3d::Identity(),
+                Eigen::Vector3d(0, 0, -0.07) + shift_H},
+               Eigen::Vector2d::Zero(), kFriction);
+  const ClosingOutcome forwards = Run(HoldParameters(), kFriction, shift_H);
+  EXPECT_TRUE(turned.held);
+  EXPECT_NEAR(turned.shift, forwards.shift, 1e-9);
+  EXPECT_NEAR(turned.turn, forwards.turn, 1e-9);
+}
+
 // The Barrett hand around a cylinder that stands along z.
 class BarrettGrasp : public testing::Test {
  protected:

@@ -75,5 +75,43 @@ TEST(CloseFingers, AlwaysEndsFreeOfCollision) {
   }
 }
 
+// A joint that mimics backwards is one whose axis the URDF has turned round.
+TEST(CloseFingers, AJointThatMimicsBackwardsClosesAsItDoesForwards) {
+  const auto barrett = workshop::LoadBarrettHand();
+  std::vector<int> outer;
+  for (const char* name : {"bh_j13_joint", "bh_j23_joint", "bh_j33_joint"}) {
+    outer.push_back(workshop::FindJoint(*barrett, name));
+  }
+  const HandShape forwards(workshop::TurnRound(*barrett, {}));
+  const HandShape backwards(workshop::TurnRound(*barrett, outer));
+  const Solid solid(workshop::MakeBox({0.05, 0.05, 0.1}));
+  Random random(5);
+  int touched = 0;
+  for (int i = 0; i < 100; ++i) {
+    const RigidTransform X_OH{
+        random.NextRotation(),
+        random.NextUniform(0.1, 0.2) * random.NextUnitVector()};
+    Eigen::VectorXd motors = Eigen::VectorXd::Zero(4);
+    motors[0] = random.NextUniform(0, M_PI);
+    for (const Precision precision :
+         {Precision::kExact, Precision::kEstimated}) {
+      const Eigen::VectorXd q = CloseFingers(
+          forwards, X_OH, forwards.model().CalcCoupledJoints(motors), solid,
+          precision);
+      Eigen::VectorXd turned = CloseFingers(
+          backwards, X_OH, backwards.model().CalcCoupledJoints(motors), solid,
+          precision);
+      for (const int j : outer) {
+        turned[j] *= -1.0;
+        if (q[j] > 0.01 && q[j] < forwards.model().joints()[j].upper - 0.01) {
+          ++touched;
+        }
+      }
+      EXPECT_TRUE(turned.isApprox(q, 1e-9)) << i;
+    }
+  }
+  EXPECT_GT(touched, 50);
+}
+
 }  // namespace
 }  // namespace graspdb

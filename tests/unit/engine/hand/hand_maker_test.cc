@@ -117,6 +117,7 @@ TEST(HandTreeCheck, RefusesWhatNoUrdfReaderMakes) {
   EXPECT_TRUE(spoil([](HandTree& t) { t.links[2].joint.name = "slide"; }));
   EXPECT_TRUE(spoil([](HandTree& t) { t.links[2].joint.X_PJ.rotation *= -1; }));
   EXPECT_TRUE(spoil([](HandTree& t) { t.links[1].mass = -1.0; }));
+  EXPECT_TRUE(spoil([](HandTree& t) { t.links[2].joint.ratio = 0.0; }));
   EXPECT_TRUE(spoil([](HandTree& t) {
     t.links[1].joint.upper = std::numeric_limits<double>::quiet_NaN();
   }));
@@ -135,7 +136,7 @@ class MadeHand : public ::testing::Test {
   }
 
   Result<HandModel> Make() const {
-    return MakeHand(ReadUrdf(kUrdf).value(), notes_,
+    return MakeHand(ReadUrdf(urdf_).value(), notes_,
                     [this](const std::string& name) -> Result<TriangleMesh> {
                       return name == "palm.obj"
                                  ? palm_
@@ -147,6 +148,7 @@ class MadeHand : public ::testing::Test {
     return hand ? "none" : hand.error().message;
   }
 
+  std::string urdf_{kUrdf};
   HandAnnotations notes_;
   TriangleMesh palm_{workshop::MakeBox({0.06, 0.06, 0.02})};
 };
@@ -194,6 +196,12 @@ TEST_F(MadeHand, NeedsConvexMeshesOfFewTriangles) {
 TEST_F(MadeHand, RefusesABreakawayThatGoesNowhere) {
   notes_.breakaway = {{"slide", "trail", -1.0}};
   EXPECT_THAT(FindFault(), HasSubstr("breakaway of trail"));
+}
+
+TEST_F(MadeHand, RefusesABreakawayOfAJointThatMimicsBackwards) {
+  urdf_ = Replace(kUrdf, "multiplier=\"20\"", "multiplier=\"-20\"");
+  notes_.breakaway = {{"slide", "trail", 1.0}};
+  EXPECT_THAT(FindFault(), HasSubstr("mimics backwards"));
 }
 
 }  // namespace

@@ -13,10 +13,11 @@ namespace {
 //          +---- x
 class PinchedBox : public ::testing::Test {
  protected:
-  double Calc() const {
-    const HandModel& model = hand_.model();
+  double Calc() const { return Calc(hand_); }
+  double Calc(const HandShape& hand) const {
+    const HandModel& model = hand.model();
     return CalcGripResidual(
-        hand_, RigidTransform(),
+        hand, RigidTransform(),
         CalcLinkPoses(model, Eigen::VectorXd::Zero(model.num_joints())),
         contacts_, mass_, cones_, grip_, motors_);
   }
@@ -41,6 +42,15 @@ class PinchedBox : public ::testing::Test {
 };
 
 TEST_F(PinchedBox, IsHeldByTheStandardForces) { EXPECT_EQ(Calc(), 0.0); }
+
+TEST_F(PinchedBox, IsHeldAsWellByAJawThatMimicsBackwards) {
+  const HandShape backwards(workshop::TurnRound(hand_.model(), {1}));
+  EXPECT_EQ(Calc(backwards), 0.0);
+  motors_.closing_force = 0.2;
+  motors_.holding_force = 0.2;
+  EXPECT_GT(Calc(backwards), 0.1);
+  EXPECT_NEAR(Calc(backwards), Calc(), 1e-9);
+}
 
 // Friction 0.5 · 0.8 on two sides carries 0.8 F across. A push of 1 N along the
 // jaws needs nothing of friction.

@@ -83,6 +83,17 @@ TEST_F(Pinch, AtFrictionThreeTheNetDisplacementIsSmallEvenWhenItSlips) {
   EXPECT_EQ(Judge(strong).CalcScore(), 0.0);
 }
 
+TEST_F(Pinch, AJawThatMimicsBackwardsHoldsAsItDoesForwards) {
+  Grasp grasp;
+  grasp.q_pregrasp = Eigen::VectorXd::Zero(gripper_->num_joints());
+  grasp.configuration = {X_OH_, grasp.q_pregrasp};
+  const PhysicalVerdict turned =
+      GraspSimulator(workshop::TurnRound(*gripper_, {1}), box_, PushTest())
+          .Judge(grasp);
+  EXPECT_EQ(turned.CalcScore(), 1.0);
+  EXPECT_EQ(turned.held, Judge(PushTest()).held);
+}
+
 TEST_F(Pinch, GivesTheSameVerdictEachTime) {
   EXPECT_EQ(Judge(PushTest()), Judge(PushTest()));
 }
