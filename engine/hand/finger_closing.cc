@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,9 +29,6 @@ constexpr double kSelfContactMotion = 0.0001;
 // often, metres of motion; estimates may miss one that cuts a corner.
 constexpr double kSelfCollisionStep = 0.010;
 constexpr double kRoughSelfCollisionStep = 0.040;
-// Links that are apart for so many of these steps are left alone meanwhile; to
-// know more takes longer.
-constexpr double kStepsAhead = 1.5;
 
 // A finger that stands in the solid draws back by this motor travel first.
 constexpr double kRetreatStep = 0.002;
@@ -261,22 +259,9 @@ class FingerMarch {
 class HandMotion {
  public:
   HandMotion(const HandShape& hand, const Eigen::VectorXd& q_start)
-      : hand_(hand), q_start_(q_start) {
-    for (const auto& [a, b] : hand.model().self_collision_pairs()) {
-      if (hand.link(a) && hand.link(b)) pairs_.push_back({a, b});
-    }
-  }
+      : hand_(hand), q_start_(q_start) {}
 
   void AddFinger(int actuator, FingerPath path) {
-    for (const int j : hand_.model().actuators()[actuator].joints) {
-      const HandJoint& joint = hand_.model().joints()[j];
-      const double most =
-          std::max(std::abs(joint.ratio), joint.breakaway_ratio);
-      for (LinkPair& pair : pairs_) {
-        pair.speed += most * (hand_.motion_bound(pair.a, j) +
-                              hand_.motion_bound(pair.b, j));
-      }
-    }
     fingers_.push_back({actuator, path.length(), std::move(path)});
   }
 
@@ -331,7 +316,6 @@ class HandMotion {
     }
     if (speed == 0.0 || end == 0.0) return;
     const double step = max_step / speed;
-    look_ahead_ = kStepsAhead * step;
     double free = 0.0;
     while (free < end) {
       const double travel = std::min(end, free + step);
@@ -345,8 +329,8 @@ class HandMotion {
         const double middle = 0.5 * (low + high);
         (FindCollision(middle) ? high : low) = middle;
       }
-      const LinkPair* const pair = FindCollision(high);
-      const bool stopped = Stop(pair->a, low) | Stop(pair->b, low);
+      const auto [a, b] = *FindCollision(high);
+      const bool stopped = Stop(a, low) | Stop(b, low);
       // Fingers that started in collision can go no further.
       if (!stopped) return;
     }
@@ -359,30 +343,10 @@ class HandMotion {
     FingerPath path;
   };
 
-  struct LinkPair {
-    int a, b;
-    double speed{0.0};  // Against each other, at most, m per motor travel.
-    double apart_at{-kInfinity};  // Motor travel about which they cannot meet.
-  };
-
-  // The pair that collides at a motor travel, if any does. Only those that may
-  // have met since they were looked at last are looked at.
-  const LinkPair* FindCollision(double travel) {
-    bool placed = false;
-    for (LinkPair& pair : pairs_) {
-      if (std::abs(travel - pair.apart_at) < look_ahead_) continue;
-      if (!std::exchange(placed, true)) {
-        CalcLinkPoses(hand_.model(), CalcJoints(travel), X_HL_);
-      }
-      const double motion = look_ahead_ * pair.speed;
-      if (CalcLinkGapBound(hand_, pair.a, pair.b, X_HL_, {motion, motion}) >=
-          motion) {
-        pair.apart_at = travel;
-      } else if (LinksCollide(hand_, pair.a, pair.b, X_HL_)) {
-        return &pair;
-      }
-    }
-    return nullptr;
+  // The pair of links that collides at a motor travel, if any does.
+  std::optional<std::pair<int, int>> FindCollision(double travel) {
+    CalcLinkPoses(hand_.model(), CalcJoints(travel), X_HL_);
+    return FindSelfCollision(hand_, X_HL_);
   }
 
   // Stops the finger that the link belongs to, if it still moves.
@@ -397,8 +361,6 @@ class HandMotion {
         }
         if (finger.stop <= travel) return false;
         finger.stop = travel;
-        // Beyond it, what was known was of another path.
-        for (LinkPair& pair : pairs_) pair.apart_at = -kInfinity;
         return true;
       }
     }
@@ -408,8 +370,6 @@ class HandMotion {
   const HandShape& hand_;
   const Eigen::VectorXd& q_start_;
   std::vector<Finger> fingers_;
-  std::vector<LinkPair> pairs_;
-  double look_ahead_{0.0};  // Motor travel.
   std::vector<RigidTransform> X_HL_;
 };
 

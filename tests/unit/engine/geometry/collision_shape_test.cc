@@ -1,6 +1,7 @@
 #include "engine/geometry/collision_shape.h"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +61,38 @@ TEST(CollisionShape, MeetsWhereFclSaysSo) {
   }
   EXPECT_GT(meets, kPoses / 4);
   EXPECT_LT(meets, 3 * kPoses / 4);
+}
+
+// Links are unions of convex pieces that overlap.
+TEST(CollisionShape, LinksMeetWhereFclSaysSo) {
+  const auto hand = workshop::LoadBarrettHand();
+  std::vector<TriangleMesh> meshes;
+  std::vector<CollisionShape> links;
+  for (const HandLink& link : hand->links()) {
+    if (link.pieces_L.empty()) continue;
+    meshes.push_back(CalcUnion(link.pieces_L));
+    links.emplace_back(meshes.back());
+  }
+  Random random(2);
+  int meets = 0;
+  constexpr int kPoses = 4000;
+  for (int i = 0; i < kPoses; ++i) {
+    const int a = random.NextIndex(static_cast<int>(links.size()));
+    const int b = random.NextIndex(static_cast<int>(links.size()));
+    // A corner of one within 4 cm of a corner of the other.
+    const auto draw = [&](int link) {
+      const auto& corners = meshes[link].vertices();
+      return corners[random.NextIndex(static_cast<int>(corners.size()))];
+    };
+    RigidTransform X_AB{random.NextRotation(), Eigen::Vector3d::Zero()};
+    X_AB.translation =
+        draw(a) + 0.04 * random.NextInUnitBall() - X_AB * draw(b);
+    const bool ours = links[a].Intersects(links[b], X_AB);
+    EXPECT_EQ(ours, links[a].IntersectsByFcl(links[b], X_AB)) << i;
+    meets += ours;
+  }
+  EXPECT_GT(meets, kPoses / 5);
+  EXPECT_LT(meets, 4 * kPoses / 5);
 }
 
 }  // namespace
