@@ -130,12 +130,12 @@ class PosedField {
     const Eigen::Vector3d shift =
         field.inverse_cell_ * (X_ML.translation - field.origin_);
     for (int k = 0; k < 3; ++k) {
-      x_[k] = static_cast<float>(turn(k, 0));
-      y_[k] = static_cast<float>(turn(k, 1));
-      z_[k] = static_cast<float>(turn(k, 2));
-      shift_[k] = static_cast<float>(shift[k]);
-      last_[k] = static_cast<float>(field.last_[k]);
-      last_cell_[k] = field.count_[k] - 2;
+      x_[k] = static_cast<float>(turn(k, 0)) + Floats4{};
+      y_[k] = static_cast<float>(turn(k, 1)) + Floats4{};
+      z_[k] = static_cast<float>(turn(k, 2)) + Floats4{};
+      shift_[k] = static_cast<float>(shift[k]) + Floats4{};
+      last_[k] = static_cast<float>(field.last_[k]) + Floats4{};
+      last_cell_[k] = field.count_[k] - 2 + Ints4{};
     }
   }
 
@@ -156,7 +156,7 @@ class PosedField {
     const Floats4 zero{};
     const auto clamp = [&zero, this](const Floats4& value, int k) {
       const Floats4 positive = value > zero ? value : zero;
-      const Floats4 last = last_[k] + zero;
+      const Floats4& last = last_[k];
       return positive < last ? positive : last;
     };
     const Floats4 u_inside = clamp(u, 0);
@@ -200,7 +200,7 @@ class PosedField {
                       const Floats4& w) const {
     const auto find_cell = [this](const Floats4& value, int k) {
       const Ints4 cell = __builtin_convertvector(value, Ints4);
-      const Ints4 last = last_cell_[k] + Ints4{};
+      const Ints4& last = last_cell_[k];
       return cell < last ? cell : last;
     };
     const Ints4 ix = find_cell(u, 0);
@@ -224,12 +224,12 @@ class PosedField {
   }
 
   // Columns of the body's axes, and where it stands, in cells.
-  std::array<float, 3> x_;
-  std::array<float, 3> y_;
-  std::array<float, 3> z_;
-  std::array<float, 3> shift_;
-  std::array<float, 3> last_;
-  std::array<int, 3> last_cell_;
+  std::array<Floats4, 3> x_;
+  std::array<Floats4, 3> y_;
+  std::array<Floats4, 3> z_;
+  std::array<Floats4, 3> shift_;
+  std::array<Floats4, 3> last_;
+  std::array<Ints4, 3> last_cell_;
   const float* values_;
   int stride_y_;
   int stride_z_;
