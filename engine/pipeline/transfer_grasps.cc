@@ -52,8 +52,7 @@ class Transferrer {
       : request_(request),
         parameters_(request.parameters),
         context_(context),
-        hand_(*request.hand),
-        parts_N_(request.novel) {}
+        hand_(*request.hand) {}
 
   Result<TransferResult> Run() {
     // The forty are fixed before the novel object is looked at.
@@ -80,18 +79,21 @@ class Transferrer {
   }
 
  private:
-  // Solids, alignments and contact maps of all wanted parts.
+  // The novel object, and solids, alignments and contact maps of all wanted
+  // parts.
   void Prepare(TransferResult& result) {
     const int count = static_cast<int>(request_.novel_parts.size());
     pairs_.resize(count);
     result.alignments.resize(count);
-    ParallelFor(count + 1, [&](int task) {
+    ParallelFor(count + 2, [&](int task) {
       if (task == 0) {
         if (request_.assemble) {
           whole_N_ = std::make_unique<Solid>(request_.novel.mesh_O, -1,
                                              request_.seen_N);
         }
-      } else if (const int p = task - 1; request_.grasp_spaces[p]) {
+      } else if (task == 1) {
+        surfaces_N_ = std::make_unique<PartSurfaces>(request_.novel);
+      } else if (const int p = task - 2; request_.grasp_spaces[p]) {
         PreparePart(p, result.alignments[p]);
       }
     });
@@ -344,7 +346,7 @@ class Transferrer {
     if (!on_part.grasp) return;
     record.transferred = Complete(*on_part.grasp, *pair.solid_N);
     record.transferred_clearances =
-        parts_N_.CalcClearances(hand_, record.transferred->configuration);
+        surfaces_N_->CalcClearances(hand_, record.transferred->configuration);
     if (!request_.assemble && !KeepsFree(record.transferred_clearances)) {
       record.transfer = TransferOutcome::kNotKeptFree;
       record.assembly = record.transfer;
@@ -366,7 +368,7 @@ class Transferrer {
       record.assembly = on_whole.outcome;
       if (!on_whole.grasp) return;
       record.assembled_clearances =
-          parts_N_.CalcClearances(hand_, on_whole.grasp->configuration);
+          surfaces_N_->CalcClearances(hand_, on_whole.grasp->configuration);
       if (!KeepsFree(record.assembled_clearances)) {
         record.assembly = TransferOutcome::kNotKeptFree;
         return;
@@ -426,8 +428,8 @@ class Transferrer {
   const HandShape& hand_;
   std::vector<PartPair> pairs_;
   std::unique_ptr<Solid> whole_N_;
-  const PartSurfaces parts_N_;
-  int found_{0};       // Sure grasps so far.
+  std::unique_ptr<PartSurfaces> surfaces_N_;  // Of its parts, on the object.
+  int found_{0};                              // Sure grasps so far.
   double share_{0.1};  // Of the work, when the next ones are tried.
 };
 
