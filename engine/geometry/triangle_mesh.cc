@@ -1,6 +1,8 @@
 #include "engine/geometry/triangle_mesh.h"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -96,20 +98,33 @@ TriangleMesh CalcUnion(const std::vector<TriangleMesh>& meshes) {
 }
 
 bool IsClosed(const TriangleMesh& mesh) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(3 * mesh.triangles().size());
+  // Where the edges lead that leave each vertex, one vertex after the other.
+  std::vector<int> ends(3 * mesh.triangles().size());
+  std::vector<int> first(static_cast<size_t>(mesh.num_vertices()) + 1, 0);
   for (const Eigen::Vector3i& t : mesh.triangles()) {
-    for (int k = 0; k < 3; ++k) edges.emplace_back(t[k], t[(k + 1) % 3]);
+    for (const int v : t) ++first[v];
   }
-  std::sort(edges.begin(), edges.end());
-  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) {
-    return false;
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  for (const Eigen::Vector3i& t : mesh.triangles()) {
+    for (int k = 0; k < 3; ++k) ends[--first[t[k]]] = t[(k + 1) % 3];
   }
-  return !edges.empty() &&
-         std::all_of(edges.begin(), edges.end(), [&edges](const auto& edge) {
-           return std::binary_search(edges.begin(), edges.end(),
-                                     std::pair(edge.second, edge.first));
-         });
+  const auto leaving = [&](int v) {
+    return std::span(ends).subspan(first[v], first[v + 1] - first[v]);
+  };
+  for (int v = 0; v < mesh.num_vertices(); ++v) {
+    const std::span<int> edges = leaving(v);
+    std::sort(edges.begin(), edges.end());
+    if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) {
+      return false;
+    }
+  }
+  for (int v = 0; v < mesh.num_vertices(); ++v) {
+    for (const int end : leaving(v)) {
+      const std::span<int> back = leaving(end);
+      if (!std::binary_search(back.begin(), back.end(), v)) return false;
+    }
+  }
+  return !ends.empty();
 }
 
 }  // namespace graspdb

@@ -22,9 +22,10 @@ constexpr double kBackOff = 0.0001;
 // the thinnest wall, so that none is passed through, metres.
 constexpr double kOvershoot = 0.001;
 // Where a finger meets the object is found to this motion, metres; where it
-// meets another one, less matters.
+// meets another one, less matters, and least to estimates.
 constexpr double kContactMotion = 0.00003;
 constexpr double kSelfContactMotion = 0.0001;
+constexpr double kRoughSelfContactMotion = 0.0005;
 // Fingers, about 20 mm thick, are tested against each other at least this
 // often, metres of motion; estimates may miss one that cuts a corner.
 constexpr double kSelfCollisionStep = 0.010;
@@ -300,7 +301,7 @@ class HandMotion {
   }
 
   // Stops fingers where they meet each other or the palm.
-  void StopAtSelfCollisions(double max_step) {
+  void StopAtSelfCollisions(double max_step, double tolerance) {
     double end = 0.0;
     double speed = 0.0;
     for (const Finger& finger : fingers_) {
@@ -325,7 +326,7 @@ class HandMotion {
       }
       double low = free;
       double high = travel;
-      while ((high - low) * speed > kSelfContactMotion) {
+      while ((high - low) * speed > tolerance) {
         const double middle = 0.5 * (low + high);
         (FindCollision(middle) ? high : low) = middle;
       }
@@ -386,10 +387,13 @@ Eigen::VectorXd CloseFingers(const HandShape& hand, const RigidTransform& X_OH,
     motion.AddFinger(
         a, FingerMarch(hand, X_OH, solid, a, q_start, precision).Run());
   }
-  motion.StopAtSelfCollisions(precision == Precision::kExact
-                                  ? kSelfCollisionStep
-                                  : kRoughSelfCollisionStep);
-  if (precision == Precision::kExact) motion.RetreatFrom(solid, X_OH);
+  if (precision == Precision::kExact) {
+    motion.StopAtSelfCollisions(kSelfCollisionStep, kSelfContactMotion);
+    motion.RetreatFrom(solid, X_OH);
+  } else {
+    motion.StopAtSelfCollisions(kRoughSelfCollisionStep,
+                                kRoughSelfContactMotion);
+  }
   return motion.CalcJoints(kInfinity);
 }
 

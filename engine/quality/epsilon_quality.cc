@@ -2,88 +2,53 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/base/random.h"
+#include "engine/math/lanes.h"
+#include "engine/math/orthogonal_vector.h"
 
 namespace graspdb {
 namespace {
 
 constexpr int kDim = 6;
-// Points this close to a facet's plane count as on it.
+// Points this close to a facet's plane count as on it, and ten times as close
+// as within it.
 constexpr double kPlaneTolerance = 3e-11;
 // More than the hull of a hundred wrenches has; a polytope that grows on is
 // broken by rounding.
 constexpr size_t kMaxFacets = 200000;
 // Facets whose memory is kept for the next polytope.
 constexpr size_t kMostKept = 16384;
-// What a plane that was spanned by its points may be off at a point of the
-// hull, and what one may be that follows from other planes.
-constexpr double kSpanError = 1e-15;
-constexpr double kMostError = 0.3 * kPlaneTolerance;
 // Spread of the wrenches below which they span no volume.
 constexpr double kFlatTolerance = 1e-8;
+// A vertex of the first simplex is at least this share as far from the others'
+// affine hull as the farthest point.
+constexpr double kSlimmest = 0.01;
+// The share of the product of five edges' lengths that their minors must come
+// to, to be exact enough.
+constexpr double kLeastMinors = 3e-4;
 
-struct Facet {
-  std::array<int, kDim> vertices;
-  std::array<int, kDim> neighbours;  // neighbours[k] lies opposite vertex k.
-  Wrench normal;                     // Unit, outward.
-  double offset{0.0};                // normal · x = offset on the plane …
-  double error{0.0};                 // … but for at most this.
-  bool alive{true};
-  bool visited{false};
-};
-
-// Where a facet meets its neighbour opposite one of its vertices.
+// Where a facet meets its neighbour: opposite one of its vertices.
 struct Ridge {
   int facet;
   int slot;
 };
 
-// The unit vector orthogonal to five rows, by elimination with full pivoting;
-// nothing when they are dependent.
-std::optional<Wrench> CalcOrthogonal(
-    Eigen::Matrix<double, kDim - 1, kDim>& rows) {
-  std::array<int, kDim> column{0, 1, 2, 3, 4, 5};
-  for (int k = 0; k < kDim - 1; ++k) {
-    int row = k, pivot = k;
-    double largest = 0.0;
-    for (int i = k; i < kDim - 1; ++i) {
-      for (int j = k; j < kDim; ++j) {
-        const double size = std::abs(rows(i, column[j]));
-        if (size > largest) {
-          largest = size;
-          row = i;
-          pivot = j;
-        }
-      }
-    }
-    if (largest < 1e-14) return std::nullopt;
-    if (row != k) rows.row(row).swap(rows.row(k));
-    std::swap(column[k], column[pivot]);
-    for (int i = k + 1; i < kDim - 1; ++i) {
-      const double factor = rows(i, column[k]) / rows(k, column[k]);
-      if (factor == 0.0) continue;
-      for (int j = k; j < kDim; ++j) {
-        rows(i, column[j]) -= factor * rows(k, column[j]);
-      }
-    }
-  }
-  Wrench normal;
-  normal[column[kDim - 1]] = 1.0;
-  for (int k = kDim - 2; k >= 0; --k) {
-    double sum = 0.0;
-    for (int j = k + 1; j < kDim; ++j) {
-      sum += rows(k, column[j]) * normal[column[j]];
-    }
-    normal[column[k]] = -sum / rows(k, column[k]);
-  }
-  return normal.normalized();
-}
+struct Facet {
+  std::array<int, kDim> vertices;
+  // ridges[k] lies opposite vertex k, in the neighbour's words.
+  std::array<Ridge, kDim> ridges;
+  Wrench normal;       // Unit, outward.
+  double offset{0.0};  // normal · x = offset on the plane.
+  bool seen{false};    // By a point that was added: gone.
+};
 
 // An inner approximation of the hull that grows one point at a time. A new one
 // takes over the memory of the last.
@@ -94,56 +59,57 @@ class ExpandingPolytope {
     points_ = points;
     if (facets_.size() > kMostKept) std::vector<Facet>().swap(facets_);
     facets_.clear();
-    queue_.clear();
     const std::optional<std::array<int, kDim + 1>> simplex = FindSimplex();
     if (!simplex) return false;
     inside_.setZero();
     for (const int i : *simplex) inside_ += points_.col(i) / (kDim + 1);
-    for (int k = 0; k <= kDim; ++k) {
-      Facet facet;
-      int slot = 0;
-      for (int i = 0; i <= kDim; ++i) {
-        if (i == k) continue;
-        facet.vertices[slot] = (*simplex)[i];
-        facet.neighbours[slot] = i;  // Facet i leaves out vertex i.
-        ++slot;
+    // Facet i leaves out vertex i.
+    for (int i = 0; i <= kDim; ++i) {
+      Facet& facet = facets_.emplace_back();
+      for (int k = 0; k < kDim; ++k) {
+        const int other = k < i ? k : k + 1;
+        facet.vertices[k] = (*simplex)[other];
+        facet.ridges[k] = {other, i < other ? i : i - 1};
       }
-      if (!SpanPlane(facet)) return false;
-      AddFacet(facet);
     }
-    return true;
+    return SpanPlanes(0);
   }
 
   // Opens the facet nearest to the origin until it is one of the hull's.
   // Nothing when rounding has broken the polytope.
   std::optional<double> ExpandTowardsOrigin() {
+    // How far the hull's nearest facet is at most.
+    double most = std::numeric_limits<double>::infinity();
+    queue_.clear();
+    Enqueue(0, most);
     while (true) {
       const int nearest = PopNearest();
       if (nearest < 0) return std::nullopt;
-      const int support = FindSupport(facets_[nearest]);
+      const auto [support, reach] = FindSupport(facets_[nearest]);
       if (support < 0) {
-        // Free of what rounding has gathered on the way.
+        // To the last digit, which minors may lack.
         if (!SpanPlane(facets_[nearest])) return std::nullopt;
         return facets_[nearest].offset;
       }
-      if (facets_.size() > kMaxFacets) return std::nullopt;
+      if (reach >= 0.0) most = std::min(most, reach);
+      const size_t first_new = facets_.size();
       if (!AddPoint(support, nearest)) return std::nullopt;
+      Enqueue(first_new, most);
     }
   }
 
   // Opens every facet; nothing when rounding has broken the polytope.
   std::optional<double> ExpandFully() {
     for (size_t f = 0; f < facets_.size(); ++f) {
-      while (facets_[f].alive) {
-        const int support = FindSupport(facets_[f]);
+      while (!facets_[f].seen) {
+        const int support = FindSupport(facets_[f]).first;
         if (support < 0) break;
-        if (facets_.size() > kMaxFacets) return std::nullopt;
         if (!AddPoint(support, static_cast<int>(f))) return std::nullopt;
       }
     }
     double volume = 0.0;
     for (const Facet& facet : facets_) {
-      if (!facet.alive) continue;
+      if (facet.seen) continue;
       Eigen::Matrix<double, kDim, kDim> edges;
       for (int k = 0; k < kDim; ++k) {
         edges.col(k) = points_.col(facet.vertices[k]) - inside_;
@@ -154,31 +120,43 @@ class ExpandingPolytope {
   }
 
  private:
-  // Seven points that are far from each other's affine hull.
+  // Seven points about the origin, as far as there are such: each the farthest
+  // towards it, but none near to the others' affine hull.
   std::optional<std::array<int, kDim + 1>> FindSimplex() {
     if (points_.cols() <= kDim) return std::nullopt;
     std::array<int, kDim + 1> simplex;
     points_.row(0).maxCoeff(&simplex[0]);
-    const Wrench origin = points_.col(simplex[0]);
-    rest_ = points_.colwise() - origin;
+    const Wrench first = points_.col(simplex[0]);
+    // Without their parts in the affine hull of those that are chosen.
+    rest_ = points_.colwise() - first;
+    Wrench to_origin = -first;
     for (int k = 1; k <= kDim; ++k) {
-      const double spread = rest_.colwise().squaredNorm().maxCoeff(&simplex[k]);
+      int farthest = 0;
+      const double spread = rest_.colwise().squaredNorm().maxCoeff(&farthest);
       if (spread < kFlatTolerance * kFlatTolerance) return std::nullopt;
+      share_.noalias() = to_origin.transpose() * rest_;
+      share_.maxCoeff(&simplex[k]);
+      if (rest_.col(simplex[k]).squaredNorm() <
+          kSlimmest * kSlimmest * spread) {
+        simplex[k] = farthest;
+      }
       const Wrench direction = rest_.col(simplex[k]).normalized();
       share_.noalias() = direction.transpose() * rest_;
       rest_.noalias() -= direction * share_;
+      to_origin -= direction * direction.dot(to_origin);
     }
     return simplex;
   }
 
-  // The facet's plane from its vertices; false when they do not span one.
+  // The facet's plane from its vertices, by elimination; false when they do not
+  // span one.
   bool SpanPlane(Facet& facet) const {
     Eigen::Matrix<double, kDim - 1, kDim> edges;
     const Wrench base = points_.col(facet.vertices[0]);
     for (int k = 1; k < kDim; ++k) {
       edges.row(k - 1) = points_.col(facet.vertices[k]) - base;
     }
-    const std::optional<Wrench> normal = CalcOrthogonal(edges);
+    const std::optional<Wrench> normal = CalcOrthogonalByElimination(edges);
     if (!normal) return false;
     facet.normal = *normal;
     facet.offset = facet.normal.dot(base);
@@ -186,34 +164,65 @@ class ExpandingPolytope {
       facet.normal = -facet.normal;
       facet.offset = -facet.offset;
     }
-    facet.error = kSpanError;
     return true;
   }
 
-  // The plane through a point and the ridge where a facet that it sees meets
-  // one that it does not: of all planes through that ridge, which are sums of
-  // the two, the one that holds the point.
-  bool CalcPlane(int point, const Facet& seen, const Facet& beyond,
-                 Facet& facet) const {
-    const Wrench p = points_.col(point);
-    const double above = seen.normal.dot(p) - seen.offset;
-    const double below = beyond.offset - beyond.normal.dot(p);
-    const Wrench sum = above * beyond.normal + below * seen.normal;
-    const double length = sum.norm();
-    // The planes' own errors, and those of the two distances.
-    const double error = above * beyond.error + below * seen.error +
-                         4.0 * (beyond.error + seen.error + kSpanError);
-    if (error > kMostError * length) return SpanPlane(facet);
-    facet.error = error / length;
-    facet.normal = sum / length;
-    facet.offset = (above * beyond.offset + below * seen.offset) / length;
+  // The planes of the facets from the first new one on.
+  bool SpanPlanes(size_t first_new) {
+    for (size_t f = first_new; f < facets_.size(); f += 2) {
+      const size_t g = std::min(f + 1, facets_.size() - 1);
+      if (!SpanTwoPlanes({&facets_[f], &facets_[g]})) return false;
+    }
     return true;
   }
 
-  void AddFacet(const Facet& facet) {
-    queue_.emplace_back(facet.offset, static_cast<int>(facets_.size()));
-    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-    facets_.push_back(facet);
+  // Side by side and by minors, where those are exact enough.
+  bool SpanTwoPlanes(const std::array<Facet*, 2>& two) const {
+    Doubles2 base[kDim];
+    Doubles2 edges[kDim - 1][kDim];
+    Doubles2 least = Doubles2{} + kLeastMinors * kLeastMinors;
+    for (int k = 0; k < kDim; ++k) {
+      const double* const p = points_.col(two[0]->vertices[k]).data();
+      const double* const q = points_.col(two[1]->vertices[k]).data();
+      Doubles2* const edge = k == 0 ? base : edges[k - 1];
+      for (int i = 0; i < kDim; ++i) edge[i] = Doubles2{p[i], q[i]};
+      if (k == 0) continue;
+      for (int i = 0; i < kDim; ++i) edge[i] -= base[i];
+      least *= CalcDot(edge, edge);
+    }
+    Doubles2 normal[kDim];
+    CalcOrthogonalByMinors(edges, normal);
+    const Doubles2 squared = CalcDot(normal, normal);
+    const Doubles2 offset = CalcDot(normal, base);
+    const Doubles2 inside = CalcDot(normal, inside_.data());
+    for (int lane = 0; lane < 2; ++lane) {
+      Facet& facet = *two[lane];
+      if (!(squared[lane] > least[lane])) {
+        if (!SpanPlane(facet)) return false;
+        continue;
+      }
+      const double scale = std::copysign(1.0 / std::sqrt(squared[lane]),
+                                         offset[lane] - inside[lane]);
+      for (int i = 0; i < kDim; ++i) facet.normal[i] = scale * normal[i][lane];
+      facet.offset = scale * offset[lane];
+    }
+    return true;
+  }
+
+  template <class Numbers>
+  static Doubles2 CalcDot(const Doubles2* a, const Numbers* b) {
+    Doubles2 sum{};
+    for (int i = 0; i < kDim; ++i) sum += a[i] * b[i];
+    return sum;
+  }
+
+  // Queues the facets from the first new one on that may be the hull's nearest.
+  void Enqueue(size_t first_new, double most) {
+    for (size_t f = first_new; f < facets_.size(); ++f) {
+      if (facets_[f].offset > most + 10 * kPlaneTolerance) continue;
+      queue_.emplace_back(facets_[f].offset, static_cast<int>(f));
+      std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+    }
   }
 
   int PopNearest() {
@@ -221,17 +230,18 @@ class ExpandingPolytope {
       std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
       const int index = queue_.back().second;
       queue_.pop_back();
-      if (facets_[index].alive) return index;
+      if (!facets_[index].seen) return index;
     }
     return -1;
   }
 
-  // The point farthest beyond the facet, or -1.
-  int FindSupport(const Facet& facet) {
+  // The point farthest beyond the facet, or -1; and how far the hull reaches
+  // along its normal.
+  std::pair<int, double> FindSupport(const Facet& facet) {
     reach_.noalias() = points_.transpose() * facet.normal;
     int support = 0;
     const double reach = reach_.maxCoeff(&support);
-    return reach > facet.offset + 10 * kPlaneTolerance ? support : -1;
+    return {reach > facet.offset + 10 * kPlaneTolerance ? support : -1, reach};
   }
 
   bool Sees(int point, const Facet& facet) const {
@@ -241,74 +251,95 @@ class ExpandingPolytope {
 
   // Replaces the facets that the point sees by a cone over their horizon. False
   // when rounding has broken the polytope.
-  bool AddPoint(int point, int first_visible) {
-    visible_.assign(1, first_visible);
-    facets_[first_visible].visited = true;
+  bool AddPoint(int point, int first_seen) {
+    if (facets_.size() > kMaxFacets) return false;
+    FindHorizon(point, first_seen);
+    const size_t first_new = facets_.size();
+    return MakeCone(point) && SpanPlanes(first_new);
+  }
+
+  // Marks what the point sees, and lists the ridges between that and the rest.
+  void FindHorizon(int point, int first_seen) {
+    Facet* const facets = facets_.data();
     horizon_.clear();
-    for (size_t i = 0; i < visible_.size(); ++i) {
+    seen_.assign(1, first_seen);
+    facets[first_seen].seen = true;
+    for (size_t i = 0; i < seen_.size(); ++i) {
+      const int f = seen_[i];
       for (int k = 0; k < kDim; ++k) {
-        const int next = facets_[visible_[i]].neighbours[k];
-        if (facets_[next].visited) continue;
-        if (Sees(point, facets_[next])) {
-          facets_[next].visited = true;
-          visible_.push_back(next);
+        const int next = facets[f].ridges[k].facet;
+        if (facets[next].seen) continue;
+        if (Sees(point, facets[next])) {
+          facets[next].seen = true;
+          seen_.push_back(next);
         } else {
-          horizon_.push_back({visible_[i], k});
+          horizon_.push_back({f, k});
         }
       }
     }
-    // One facet per ridge of the horizon, which takes the place of the one
-    // beyond it as the neighbour of the one that is seen.
-    const auto first_new = facets_.size();
-    for (const Ridge& ridge : horizon_) {
-      Facet& seen = facets_[ridge.facet];
-      const int beyond = seen.neighbours[ridge.slot];
-      const int index = static_cast<int>(facets_.size());
-      Facet facet;
-      facet.vertices = seen.vertices;
-      facet.vertices[ridge.slot] = point;
-      facet.neighbours[ridge.slot] = beyond;
-      if (!CalcPlane(point, seen, facets_[beyond], facet)) return false;
-      std::array<int, kDim>& back = facets_[beyond].neighbours;
-      *std::find(back.begin(), back.end(), ridge.facet) = index;
-      seen.neighbours[ridge.slot] = index;
-      AddFacet(facet);
+  }
+
+  // One facet per ridge of the horizon, which takes the place of the one beyond
+  // it as the neighbour of the one that is seen; its plane is yet to be found.
+  bool MakeCone(int point) {
+    const auto first_new = static_cast<int>(facets_.size());
+    const auto num_new = static_cast<int>(horizon_.size());
+    facets_.resize(first_new + num_new);
+    Facet* const facets = facets_.data();
+    for (int i = 0; i < num_new; ++i) {
+      const auto [f, slot] = horizon_[i];
+      Facet& facet = facets[first_new + i];
+      const Ridge beyond = facets[f].ridges[slot];
+      facet.vertices = facets[f].vertices;
+      facet.vertices[slot] = point;
+      facet.ridges.fill({-1, 0});
+      facet.ridges[slot] = beyond;
+      const Ridge base{first_new + i, slot};
+      facets[beyond.facet].ridges[beyond.slot] = base;
+      facets[f].ridges[slot] = base;
     }
-    for (size_t i = 0; i < horizon_.size(); ++i) {
-      Facet& facet = facets_[first_new + i];
+    for (int i = 0; i < num_new; ++i) {
+      Facet& facet = facets[first_new + i];
       for (int k = 0; k < kDim; ++k) {
-        if (k == horizon_[i].slot) continue;
-        facet.neighbours[k] = FindNeighbour(horizon_[i], k);
-        if (facet.neighbours[k] < 0) return false;
+        if (facet.ridges[k].facet >= 0) continue;
+        const Ridge other = FindNeighbour(horizon_[i], k);
+        if (other.facet < 0) return false;
+        facet.ridges[k] = other;
+        facets[other.facet].ridges[other.slot] = {first_new + i, k};
       }
     }
-    for (const int f : visible_) facets_[f].alive = false;
     return true;
   }
 
-  // The new facet that shares with the one over a ridge of the horizon all but
-  // the vertex in slot k: around what they share, through facets that are seen,
-  // to where the horizon is met again. -1 when rounding has broken the
-  // polytope.
-  int FindNeighbour(const Ridge& ridge, int k) const {
-    int from = ridge.facet;
-    int left_out = facets_[from].vertices[ridge.slot];
-    int next = facets_[from].neighbours[k];
-    for (size_t turn = 0; turn < visible_.size(); ++turn) {
-      const Facet& facet = facets_[next];
-      if (!facet.visited) return next;
-      const auto entered =
-          std::find(facet.neighbours.begin(), facet.neighbours.end(), from);
-      const auto left =
-          std::find(facet.vertices.begin(), facet.vertices.end(), left_out);
-      if (entered == facet.neighbours.end() || left == facet.vertices.end()) {
-        return -1;
-      }
-      from = next;
-      left_out = facet.vertices[entered - facet.neighbours.begin()];
-      next = facet.neighbours[left - facet.vertices.begin()];
+  // The ridge that the new facet over one of the horizon has opposite its
+  // vertex k, as the neighbour there has it: around what they share, through
+  // facets that are seen, to where the horizon is met again. No facet when
+  // rounding has broken the polytope.
+  Ridge FindNeighbour(const Ridge& ridge, int k) const {
+    const Facet* const facets = facets_.data();
+    const Facet* from = &facets[ridge.facet];
+    int entered = ridge.slot;
+    int leave = k;
+    for (size_t turn = 0; turn < seen_.size(); ++turn) {
+      const Ridge next = from->ridges[leave];
+      const Facet& facet = facets[next.facet];
+      // A new facet has its vertices in the slots of the one it was made over.
+      if (!facet.seen) return {next.facet, entered};
+      leave = FindSlot(facet, from->vertices[entered]);
+      if (leave == kDim) break;
+      from = &facet;
+      entered = next.slot;
     }
-    return facets_[next].visited ? -1 : next;
+    return {-1, 0};
+  }
+
+  // Without a branch that depends on the data.
+  static int FindSlot(const Facet& facet, int vertex) {
+    unsigned found = 1u << kDim;
+    for (int k = 0; k < kDim; ++k) {
+      found |= static_cast<unsigned>(facet.vertices[k] == vertex) << k;
+    }
+    return std::countr_zero(found);
   }
 
   Wrenches points_;
@@ -319,7 +350,7 @@ class ExpandingPolytope {
   Wrenches rest_;
   Eigen::RowVectorXd share_;
   Eigen::VectorXd reach_;
-  std::vector<int> visible_;
+  std::vector<int> seen_;
   std::vector<Ridge> horizon_;
 };
 

@@ -12,6 +12,7 @@
 #include <Eigen/SVD>
 
 #include "engine/base/contract.h"
+#include "engine/base/parallel.h"
 
 namespace graspdb {
 namespace {
@@ -191,7 +192,7 @@ class Aligner {
     std::vector<Candidate> candidates = FindStarts();
     const NormalizedSamples E = Thin(E_, kMediumSamples);
     const NormalizedSamples N = Thin(N_, kMediumSamples);
-    for (Candidate& c : candidates) c = Iterate(E, N, c.map, kMediumSteps);
+    IterateAll(E, N, kMediumSteps, candidates);
     if (!options_.scale) {
       for (Candidate& c : candidates) c.residual = CalcDeviation(E, N, c.map);
     }
@@ -283,6 +284,14 @@ class Aligner {
     return {map, residual};
   }
 
+  void IterateAll(const NormalizedSamples& E, const NormalizedSamples& N,
+                  int steps, std::vector<Candidate>& candidates) const {
+    ParallelFor(static_cast<int>(candidates.size()), [&](int i) {
+      Candidate& candidate = candidates[static_cast<size_t>(i)];
+      candidate = Iterate(E, N, candidate.map, steps);
+    });
+  }
+
   // The best starts after a few steps on few samples, all different.
   std::vector<Candidate> FindStarts() const {
     const NormalizedSamples E = Thin(E_, options_.coarse_samples);
@@ -291,12 +300,12 @@ class Aligner {
     for (const Eigen::Matrix3d& rotation : options_.start_rotations.empty()
                                                ? MakeStartRotations(E_, N_)
                                                : options_.start_rotations) {
-      all.push_back(
-          Iterate(E, N, {rotation, Eigen::Vector3d::Zero()}, kFirstSteps));
+      all.push_back({{rotation, Eigen::Vector3d::Zero()}, 0.0});
     }
+    IterateAll(E, N, kFirstSteps, all);
     SortByResidual(all);
     all.resize((all.size() + kCoarseShare - 1) / kCoarseShare);
-    for (Candidate& c : all) c = Iterate(E, N, c.map, kCoarseSteps);
+    IterateAll(E, N, kCoarseSteps, all);
     SortByResidual(all);
     std::vector<Candidate> chosen;
     for (const Candidate& candidate : all) {

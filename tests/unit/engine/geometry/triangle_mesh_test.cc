@@ -1,10 +1,13 @@
 #include "engine/geometry/triangle_mesh.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/base/contract.h"
+#include "tests/support/workshop.h"
 
 namespace graspdb {
 namespace {
@@ -63,6 +66,36 @@ TEST(IsClosed, HoldsForASolidOnly) {
   const TriangleMesh flipped({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                              {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
   EXPECT_FALSE(IsClosed(flipped));
+}
+
+TEST(IsClosed, EndsWithOneTriangleLessOrOneTurnedOverOrTwice) {
+  const TriangleMesh sphere = workshop::MakeSphere(0.05, 8);
+  ASSERT_TRUE(IsClosed(sphere));
+  for (int f = 0; f < sphere.num_triangles(); ++f) {
+    std::vector<Eigen::Vector3i> triangles = sphere.triangles();
+    std::swap(triangles[f][0], triangles[f][1]);
+    EXPECT_FALSE(IsClosed(TriangleMesh(sphere.vertices(), triangles))) << f;
+    triangles.push_back(sphere.triangles()[f]);
+    EXPECT_FALSE(IsClosed(TriangleMesh(sphere.vertices(), triangles))) << f;
+    triangles = sphere.triangles();
+    triangles.erase(triangles.begin() + f);
+    EXPECT_FALSE(IsClosed(TriangleMesh(sphere.vertices(), triangles))) << f;
+  }
+}
+
+// A hub of 200,000 triangles: no vertex's edges are compared pair by pair.
+TEST(IsClosed, IsSoonToldOfAVertexThatAllTrianglesShare) {
+  constexpr int kRim = 100000;
+  std::vector<Eigen::Vector3d> vertices{{0, 0, 1}, {0, 0, -1}};
+  std::vector<Eigen::Vector3i> triangles;
+  for (int i = 0; i < kRim; ++i) {
+    const double angle = 2.0 * M_PI * i / kRim;
+    vertices.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+    const int here = 2 + i, next = 2 + (i + 1) % kRim;
+    triangles.emplace_back(0, here, next);
+    triangles.emplace_back(1, next, here);
+  }
+  EXPECT_TRUE(IsClosed(TriangleMesh(vertices, triangles)));
 }
 
 }  // namespace
