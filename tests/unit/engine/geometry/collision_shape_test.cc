@@ -63,6 +63,28 @@ TEST(CollisionShape, MeetsWhereFclSaysSo) {
   EXPECT_LT(meets, 3 * kPoses / 4);
 }
 
+// Boxes are compared in single precision, which says apart of none that is not.
+TEST(CollisionShape, MeetsWhereFclSaysSoFarFromTheOrigins) {
+  Random random(5);
+  for (const double far : {1.0, 30.0, 1000.0}) {
+    const Eigen::Vector3d p_MA = far * random.NextUnitVector();
+    const CollisionShape box(
+        CalcTransformed(workshop::MakeBox({0.02, 0.03, 0.05}, 4), Shift(p_MA)));
+    const CollisionShape ball(workshop::MakeSphere(0.03, 8));
+    int meets = 0;
+    constexpr int kPoses = 500;
+    for (int i = 0; i < kPoses; ++i) {
+      const RigidTransform X_MB{random.NextRotation(),
+                                p_MA + 0.07 * random.NextInUnitBall()};
+      const bool ours = box.Intersects(ball, X_MB);
+      EXPECT_EQ(ours, box.IntersectsByFcl(ball, X_MB)) << far << " " << i;
+      meets += ours;
+    }
+    EXPECT_GT(meets, kPoses / 5);
+    EXPECT_LT(meets, 4 * kPoses / 5);
+  }
+}
+
 // Links are unions of convex pieces that overlap.
 TEST(CollisionShape, LinksMeetWhereFclSaysSo) {
   const auto hand = workshop::LoadBarrettHand();
