@@ -127,7 +127,7 @@ struct CollisionShape::Impl {
         : A_(A),
           B_(B),
           X_AB_(X_AB),
-          axes_{ToLanes(X_AB.rotation.row(0)), ToLanes(X_AB.rotation.row(1)),
+          rows_{ToLanes(X_AB.rotation.row(0)), ToLanes(X_AB.rotation.row(1)),
                 ToLanes(X_AB.rotation.row(2))},
           columns_{ToLanes(X_AB.rotation.col(0)), ToLanes(X_AB.rotation.col(1)),
                    ToLanes(X_AB.rotation.col(2))},
@@ -141,7 +141,7 @@ struct CollisionShape::Impl {
     bool Meets(int i, int j) const {
       const Box& b = B_.boxes[static_cast<size_t>(j)];
       const auto turn = [&b, this](int k) {
-        return Combine(axes_[k], b.place.x, b.place.y, b.place.z);
+        return Combine(rows_[k], b.place.x, b.place.y, b.place.z);
       };
       return Meets(i, j,
                    {turn(0), turn(1), turn(2),
@@ -169,8 +169,8 @@ struct CollisionShape::Impl {
     const Impl& A_;
     const Impl& B_;
     const RigidTransform& X_AB_;
-    const std::array<Floats4, 3> axes_;     // Rows of the rotation.
-    const std::array<Floats4, 3> columns_;  // Its columns.
+    const std::array<Floats4, 3> rows_;  // Of the rotation.
+    const std::array<Floats4, 3> columns_;
     const Floats4 shift_;
     const float slack_;
   };

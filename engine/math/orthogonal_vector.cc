@@ -11,7 +11,7 @@ constexpr int kDim = 6;
 
 }  // namespace
 
-std::optional<Vector6> CalcOrthogonalByElimination(
+std::optional<Eigen::Vector<double, 6>> CalcOrthogonalByElimination(
     Eigen::Matrix<double, 5, 6> rows) {
   std::array<int, kDim> column{0, 1, 2, 3, 4, 5};
   for (int k = 0; k < kDim - 1; ++k) {
@@ -38,7 +38,7 @@ std::optional<Vector6> CalcOrthogonalByElimination(
       }
     }
   }
-  Vector6 normal;
+  Eigen::Vector<double, 6> normal;
   normal[column[kDim - 1]] = 1.0;
   for (int k = kDim - 2; k >= 0; --k) {
     double sum = 0.0;

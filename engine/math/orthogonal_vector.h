@@ -7,11 +7,9 @@
 
 namespace graspdb {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
 /** The unit vector orthogonal to five rows, by elimination with full pivoting;
  nothing when they are dependent. */
-std::optional<Vector6> CalcOrthogonalByElimination(
+std::optional<Eigen::Vector<double, 6>> CalcOrthogonalByElimination(
     Eigen::Matrix<double, 5, 6> rows);
 
 /** The vector orthogonal to five rows whose length is the volume that they

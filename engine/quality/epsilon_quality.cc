@@ -18,9 +18,10 @@ namespace graspdb {
 namespace {
 
 constexpr int kDim = 6;
-// Points this close to a facet's plane count as on it, and ten times as close
-// as within it.
+// Points this close to a facet's plane count as on it.
 constexpr double kPlaneTolerance = 3e-11;
+// A facet beyond which no point reaches by more than this is the hull's.
+constexpr double kReachTolerance = 10 * kPlaneTolerance;
 // More than the hull of a hundred wrenches has; a polytope that grows on is
 // broken by rounding.
 constexpr size_t kMaxFacets = 200000;
@@ -219,7 +220,7 @@ class ExpandingPolytope {
   // Queues the facets from the first new one on that may be the hull's nearest.
   void Enqueue(size_t first_new, double most) {
     for (size_t f = first_new; f < facets_.size(); ++f) {
-      if (facets_[f].offset > most + 10 * kPlaneTolerance) continue;
+      if (facets_[f].offset > most + kReachTolerance) continue;
       queue_.emplace_back(facets_[f].offset, static_cast<int>(f));
       std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
     }
@@ -241,7 +242,7 @@ class ExpandingPolytope {
     reach_.noalias() = points_.transpose() * facet.normal;
     int support = 0;
     const double reach = reach_.maxCoeff(&support);
-    return {reach > facet.offset + 10 * kPlaneTolerance ? support : -1, reach};
+    return {reach > facet.offset + kReachTolerance ? support : -1, reach};
   }
 
   bool Sees(int point, const Facet& facet) const {

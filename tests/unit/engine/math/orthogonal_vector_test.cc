@@ -38,7 +38,7 @@ TEST(OrthogonalVector, ByMinorsIsTheOneByEliminationAndOrthogonalToTheRows) {
     }
     Doubles2 orthogonal[6];
     CalcOrthogonalByMinors(rows, orthogonal);
-    Vector6 first, second;
+    Eigen::Vector<double, 6> first, second;
     for (int j = 0; j < 6; ++j) {
       first[j] = orthogonal[j][0];
       second[j] = orthogonal[j][1];
