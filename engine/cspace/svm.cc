@@ -72,10 +72,10 @@ Svm::Svm(const Eigen::MatrixXd& features, const std::vector<bool>& labels,
 }
 
 double Svm::CalcDecisionValue(const Eigen::VectorXd& features) const {
-  const auto squared =
-      (points_.colwise() - features).colwise().squaredNorm().array();
-  return ((-gamma_ * squared).exp() * coefficients_.transpose().array()).sum() -
-         offset_;
+  // In a variable of its own, so that the exponentials are taken side by side.
+  const Eigen::ArrayXd squared =
+      (points_.colwise() - features).colwise().squaredNorm();
+  return ((-gamma_ * squared).exp() * coefficients_.array()).sum() - offset_;
 }
 
 }  // namespace graspdb

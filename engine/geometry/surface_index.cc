@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include <embree3/rtcore.h>
@@ -92,24 +91,31 @@ struct SurfaceIndex::Impl {
 
   void CalcPseudonormals() {
     corner_normals.assign(mesh.num_vertices(), Eigen::Vector3d::Zero());
-    std::map<std::pair<int, int>, Eigen::Vector3d> edges;
-    const auto edge_key = [this](int f, int k) {
-      const Eigen::Vector3i& t = mesh.triangles()[f];
-      return std::pair<int, int>(std::minmax(t[k], t[(k + 1) % 3]));
-    };
+    // Each side of each face: the edge's ends, the smaller first, and 3 f + k.
+    std::vector<std::array<int, 3>> sides;
+    sides.reserve(3 * mesh.triangles().size());
     for (int f = 0; f < mesh.num_triangles(); ++f) {
+      const Eigen::Vector3i& t = mesh.triangles()[f];
       for (int k = 0; k < 3; ++k) {
-        corner_normals[mesh.triangles()[f][k]] +=
-            CalcCornerAngle(mesh, f, k) * mesh.normal(f);
-        edges.try_emplace(edge_key(f, k), Eigen::Vector3d::Zero())
-            .first->second += mesh.normal(f);
+        corner_normals[t[k]] += CalcCornerAngle(mesh, f, k) * mesh.normal(f);
+        const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+        sides.push_back({low, high, 3 * f + k});
       }
     }
     for (Eigen::Vector3d& n : corner_normals) n.normalize();
+    std::sort(sides.begin(), sides.end());
     edge_normals.resize(mesh.num_triangles());
-    for (int f = 0; f < mesh.num_triangles(); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        edge_normals[f][k] = edges[edge_key(f, k)].normalized();
+    for (auto begin = sides.begin(); begin != sides.end();) {
+      const auto end = std::find_if(begin, sides.end(), [&](const auto& side) {
+        return side[0] != (*begin)[0] || side[1] != (*begin)[1];
+      });
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (auto side = begin; side != end; ++side) {
+        sum += mesh.normal((*side)[2] / 3);
+      }
+      sum.normalize();
+      for (; begin != end; ++begin) {
+        edge_normals[(*begin)[2] / 3][(*begin)[2] % 3] = sum;
       }
     }
   }

@@ -90,7 +90,7 @@ struct SwarmParameters {
       ParameterInfo{"1/N", 0, 1e6, "ours: of the residual, beside Eq. (1)"});
     f("near_share", self.near_share,
       ParameterInfo{"1", 0, 1,
-                    "ours: restarts near one that was found or nearly so"});
+                    "ours: restarts that may be near one that was found"});
     f("shun_failed", self.shun_failed,
       ParameterInfo{"1", 0, 1,
                     "ours: no particle's best is where a grasp fell through"});

@@ -15,6 +15,7 @@
 #include "engine/planning/grasp_coverage.h"
 #include "engine/planning/grasp_evaluator.h"
 #include "engine/planning/perturbed_copies.h"
+#include "engine/planning/start_yield.h"
 #include "engine/quality/opposed_contacts.h"
 
 namespace graspdb {
@@ -46,6 +47,13 @@ struct FoundGrasp {
   bool sure{false};     // Only these are kept.
 };
 
+// What particles may start near: an approach's grasps, or else what came
+// nearest.
+struct Lead {
+  int approach{0};
+  std::vector<const Grasp*> grasps;
+};
+
 struct Particle {
   HandPosture here;
   Velocity velocity;
@@ -53,6 +61,7 @@ struct Particle {
   double best_measure{std::numeric_limits<double>::infinity()};
   int niche{0};
   int stale{0};                     // Iterations without improvement.
+  std::optional<int> led_by;        // The approach of what it started near.
   std::optional<FoundGrasp> found;  // In this iteration.
 };
 
@@ -92,9 +101,7 @@ class Swarm {
         }
         Judge(particle, random.NextBits());
       });
-      for (Particle& particle : particles_) {
-        if (particle.found) Keep(*particle.found);
-      }
+      for (const Particle& particle : particles_) KeepWhatIsFound(particle);
       UpdateNicheBests();
       UpdateLeads();
       context.ReportProgress(
@@ -117,15 +124,17 @@ class Swarm {
   void Restart(Particle& particle, int iteration, int index, Random& random) {
     const size_t next =
         static_cast<size_t>(iteration) * swarm_.particles + index;
-    const bool near = random.NextUniform() < swarm_.near_share;
+    const bool may_be_near = random.NextUniform() < swarm_.near_share;
     const bool aimed = random.NextUniform() < swarm_.aimed_share;
     const bool uniform = !aimed && random.NextUniform() < swarm_.uniform_share;
-    if (near && !leads_.empty()) {
-      // Any approach that has led to one is as likely as another.
-      const std::vector<const Grasp*>& niche = leads_[static_cast<size_t>(
-          random.NextIndex(static_cast<int>(leads_.size())))];
-      const Grasp& found = *niche[static_cast<size_t>(
-          random.NextIndex(static_cast<int>(niche.size())))];
+    const auto led_by =
+        may_be_near ? DrawByYield(lead_yields_, random) : std::nullopt;
+    particle.led_by.reset();
+    if (led_by) {
+      const Lead& lead = leads_[*led_by];
+      particle.led_by = lead.approach;
+      const Grasp& found = *lead.grasps[static_cast<size_t>(
+          random.NextIndex(static_cast<int>(lead.grasps.size())))];
       // It must be near to hold like that one and far to be another.
       const double scale = random.NextUniform();
       particle.here = space_.Perturb(
@@ -295,6 +304,15 @@ class Swarm {
         .gripped;
   }
 
+  void KeepWhatIsFound(const Particle& particle) {
+    const int size_before = archive_.size();
+    if (particle.found) Keep(*particle.found);
+    if (!particle.led_by) return;
+    StartYield& yield = yields_[*particle.led_by];
+    ++yield.tries;
+    if (archive_.size() > size_before) ++yield.gains;
+  }
+
   // Sure ones are kept; of the others, of each approach, the surest.
   void Keep(const FoundGrasp& found) {
     if (found.sure) {
@@ -321,7 +339,11 @@ class Swarm {
       for (const FoundGrasp& found : almost) leads.push_back(&found.grasp);
     }
     leads_.clear();
-    for (auto& [niche, grasps] : niches) leads_.push_back(std::move(grasps));
+    lead_yields_.clear();
+    for (auto& [niche, grasps] : niches) {
+      leads_.push_back({niche, std::move(grasps)});
+      lead_yields_.push_back(CalcYield(yields_[niche]));
+    }
   }
 
   void UpdateNicheBests() {
@@ -350,9 +372,10 @@ class Swarm {
   GraspArchive archive_;
   // For each approach, the grasps that came nearest to being sure.
   std::map<int, std::vector<FoundGrasp>> almost_;
-  // For each approach that has any: what was found, or else almost so.
-  std::vector<std::vector<const Grasp*>> leads_;
-  std::vector<int> niche_best_;  // Particle with the best measure, or -1.
+  std::vector<Lead> leads_;
+  std::vector<double> lead_yields_;   // Of each lead.
+  std::map<int, StartYield> yields_;  // Of each approach that ever led one.
+  std::vector<int> niche_best_;       // Particle with the best measure, or -1.
   std::vector<Particle> particles_;
   std::vector<HandPosture> leaders_;  // Each particle's best so far.
 };

@@ -1,5 +1,6 @@
 #include "server/decode/decode_protocol.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -27,6 +28,13 @@ bool MayDecoderSay(ErrorCode code) {
          code == ErrorCode::kInternal;
 }
 
+// Whether an array of them holds numbers and nothing else.
+template <typename Vector>
+constexpr bool IsPacked() {
+  return sizeof(Vector) ==
+         Vector::SizeAtCompileTime * sizeof(typename Vector::Scalar);
+}
+
 class Writer {
  public:
   template <typename T>
@@ -39,22 +47,21 @@ class Writer {
     Write<uint64_t>(text.size());
     bytes_.insert(bytes_.end(), text.begin(), text.end());
   }
-  void WritePoints(const std::vector<Eigen::Vector3d>& points) {
-    Write<uint64_t>(points.size());
-    for (const Eigen::Vector3d& p : points) {
-      for (const double x : p) Write(x);
-    }
+  // Of vectors of a fixed length.
+  template <typename Vector>
+  void WriteVectors(const std::vector<Vector>& vectors) {
+    static_assert(IsPacked<Vector>());
+    Write<uint64_t>(vectors.size());
+    const auto* begin = reinterpret_cast<const uint8_t*>(vectors.data());
+    bytes_.insert(bytes_.end(), begin, begin + vectors.size() * sizeof(Vector));
   }
   void WritePose(const RigidTransform& X) {
     for (const double x : X.rotation.reshaped()) Write(x);
     for (const double x : X.translation) Write(x);
   }
   void WriteMesh(const TriangleMesh& mesh) {
-    WritePoints(mesh.vertices());
-    Write<uint64_t>(mesh.triangles().size());
-    for (const Eigen::Vector3i& t : mesh.triangles()) {
-      for (const int v : t) Write(v);
-    }
+    WriteVectors(mesh.vertices());
+    WriteVectors(mesh.triangles());
   }
   std::vector<uint8_t> TakeBytes() { return std::move(bytes_); }
 
@@ -106,11 +113,21 @@ class Reader {
     return x;
   }
 
+  template <typename Vector>
+  std::vector<Vector> ReadVectors() {
+    static_assert(IsPacked<Vector>());
+    std::vector<Vector> vectors(ReadCount(sizeof(Vector)));
+    const std::size_t size = vectors.size() * sizeof(Vector);
+    std::copy_n(rest_.begin(), size,
+                reinterpret_cast<uint8_t*>(vectors.data()));
+    rest_ = rest_.subspan(size);
+    return vectors;
+  }
+
   std::vector<Eigen::Vector3d> ReadPoints() {
-    std::vector<Eigen::Vector3d> points(ReadCount(3 * sizeof(double)));
-    for (Eigen::Vector3d& p : points) {
-      for (double& x : p) x = ReadFinite();
-    }
+    auto points = ReadVectors<Eigen::Vector3d>();
+    Require(std::all_of(points.begin(), points.end(),
+                        [](const auto& p) { return p.allFinite(); }));
     return points;
   }
 
@@ -189,13 +206,12 @@ class Reader {
 
   TriangleMesh ReadMesh() {
     std::vector<Eigen::Vector3d> vertices = ReadPoints();
-    std::vector<Eigen::Vector3i> triangles(ReadCount(3 * sizeof(int)));
-    for (Eigen::Vector3i& t : triangles) {
-      for (int& v : t) {
-        v = Read<int>();
-        Require(v >= 0 && static_cast<std::size_t>(v) < vertices.size());
-      }
-    }
+    auto triangles = ReadVectors<Eigen::Vector3i>();
+    const auto count = static_cast<int64_t>(vertices.size());
+    Require(
+        std::all_of(triangles.begin(), triangles.end(), [count](const auto& t) {
+          return t.minCoeff() >= 0 && t.maxCoeff() < count;
+        }));
     if (!ok_) return {};
     TriangleMesh mesh(std::move(vertices), std::move(triangles));
     Require(IsClosed(mesh));
@@ -327,7 +343,7 @@ std::vector<uint8_t> EncodeAnswer(const Result<DecodeAnswer>& answer) {
     writer.Write(report.noise);
     writer.Write<uint8_t>(report.one_sided);
     writer.Write(answer->cloud->seen_share);
-    writer.WritePoints(answer->cloud->points_O);
+    writer.WriteVectors(answer->cloud->points_O);
   }
   writer.WriteText(answer->confinement);
   writer.Write(answer->seconds.read);

@@ -264,8 +264,9 @@ class StageBench {
   }
 
   // What a distinct stable grasp of a part costs one thread that searches from
-  // scratch, as planners count: where particles are aimed at the surface, and
-  // neither the whole object nor disturbed copies have a say.
+  // scratch, as planners count: particles are aimed at the surface or start
+  // near what was found, and neither the whole object, motors, disturbed copies
+  // nor the order in which fingers arrive have a say.
   Result<void> MeasureSearch() {
     GRASPDB_TRY(examples, LoadExamples(store_, order_.category, ""));
     GRASPDB_TRY(stored, store_.ListParts(examples.ids.front()));
@@ -275,7 +276,10 @@ class StageBench {
     const ConfigurationSpace space(*hand, part);
     Parameters parameters;
     parameters.swarm.aimed_share = 1.0;
+    parameters.swarm.near_share = 0.9;
     parameters.swarm.min_grip = 0.0;
+    parameters.swarm.grip_weight = 0.0;
+    parameters.pregrasp.timed = false;
     parameters.swarm.target_grasps = 100'000;
     parameters.swarm.iterations = 1'000'000;
     ExecutionContext timed;
