@@ -52,6 +52,8 @@ struct SwarmParameters {
   int grip_copies{8};
   double grip_weight{10.0};
   double near_share{0.5};
+  double expected_yield{0.01};
+  double yield_elsewhere{0.005};
   bool shun_failed{true};
   int target_grasps{300};
 
@@ -90,7 +92,13 @@ struct SwarmParameters {
       ParameterInfo{"1/N", 0, 1e6, "ours: of the residual, beside Eq. (1)"});
     f("near_share", self.near_share,
       ParameterInfo{"1", 0, 1,
-                    "ours: restarts that may be near one that was found"});
+                    "ours: restarts that may be near one found or nearly so"});
+    f("expected_yield", self.expected_yield,
+      ParameterInfo{"1", 1e-6, 1,
+                    "ours: new grasps a try near one, until it is known"});
+    f("yield_elsewhere", self.yield_elsewhere,
+      ParameterInfo{"1", 1e-6, 1,
+                    "ours: weight of starts elsewhere beside it"});
     f("shun_failed", self.shun_failed,
       ParameterInfo{"1", 0, 1,
                     "ours: no particle's best is where a grasp fell through"});

@@ -128,7 +128,8 @@ class Swarm {
     const bool aimed = random.NextUniform() < swarm_.aimed_share;
     const bool uniform = !aimed && random.NextUniform() < swarm_.uniform_share;
     const auto led_by =
-        may_be_near ? DrawByYield(lead_yields_, random) : std::nullopt;
+        may_be_near ? DrawByYield(lead_yields_, swarm_.yield_elsewhere, random)
+                    : std::nullopt;
     particle.led_by.reset();
     if (led_by) {
       const Lead& lead = leads_[*led_by];
@@ -342,7 +343,7 @@ class Swarm {
     lead_yields_.clear();
     for (auto& [niche, grasps] : niches) {
       leads_.push_back({niche, std::move(grasps)});
-      lead_yields_.push_back(CalcYield(yields_[niche]));
+      lead_yields_.push_back(CalcYield(yields_[niche], swarm_.expected_yield));
     }
   }
 

@@ -13,15 +13,16 @@ struct StartYield {
   int gains{0};  ///< New grasps, of whatever approach.
 };
 
-/** New grasps per try, where one in 100 is expected until something is known:
- (gains + 1) / (tries + 100). */
-double CalcYield(const StartYield& yield);
+/** New grasps per try: (gains + 1) / (tries + 1 / expected).
+ @param expected  What it is held for until something is known, (0, 1]. */
+double CalcYield(const StartYield& yield, double expected);
 
 /** Draws an index in proportion to what each yields.
  @param yields  As by CalcYield().
- @returns nullopt, to start elsewhere, as if that yielded 0.005 in the long run:
- always when there are none, and nearly always when all are exhausted. */
+ @param elsewhere  What starting elsewhere is held to yield, > 0.
+ @returns nullopt, to start elsewhere: always when there are no yields, and
+ nearly always when all are exhausted. */
 std::optional<size_t> DrawByYield(const std::vector<double>& yields,
-                                  Random& random);
+                                  double elsewhere, Random& random);
 
 }  // namespace graspdb

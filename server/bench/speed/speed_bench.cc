@@ -140,8 +140,8 @@ class SpeedBench {
     StageOrder stages;
     stages.category = order_.category;
     stages.meshes = meshes_;
-    stages.sources = order_.quick ? 2 : 8;
-    stages.grasps = order_.quick ? 10 : 100;
+    stages.sources = order_.quick ? 2 : 40;
+    stages.grasps = order_.quick ? 10 : 300;
     stages.search_seconds = order_.quick ? 1 : 5;
     stages.seed = order_.seed;
     stages.stopwatch = stopwatch();

@@ -303,7 +303,7 @@ class StageBench {
     return {};
   }
 
-  // A few grasps of the first example's first part.
+  // The first example's first part, once more.
   Result<void> MeasureLearning() {
     GRASPDB_TRY(examples, LoadExamples(store_, order_.category, ""));
     GRASPDB_TRY(stored, store_.ListParts(examples.ids.front()));

@@ -14,8 +14,8 @@ namespace graspdb {
 struct StageOrder {
   std::string category{"mug"};
   std::vector<TriangleMesh> meshes;  ///< Novel ones of the category.
-  int sources{8};                    ///< Source grasps per part.
-  int grasps{100};                   ///< Learned once more, of one part.
+  int sources{40};                   ///< Source grasps per part.
+  int grasps{300};                   ///< Learned once more, of one part.
   int search_seconds{5};             ///< Of a search from scratch.
   uint64_t seed{1};
   StopwatchOptions stopwatch;

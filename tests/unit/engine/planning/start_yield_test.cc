@@ -5,16 +5,16 @@
 namespace graspdb {
 namespace {
 
-TEST(StartYield, IsOneInAHundredUntilSomethingIsKnown) {
-  EXPECT_DOUBLE_EQ(CalcYield({}), 0.01);
-  EXPECT_DOUBLE_EQ(CalcYield({.tries = 100, .gains = 0}), 0.005);
-  EXPECT_DOUBLE_EQ(CalcYield({.tries = 1900, .gains = 99}), 0.05);
+TEST(StartYield, IsWhatIsExpectedUntilSomethingIsKnown) {
+  EXPECT_DOUBLE_EQ(CalcYield({}, 0.01), 0.01);
+  EXPECT_DOUBLE_EQ(CalcYield({.tries = 100, .gains = 0}, 0.01), 0.005);
+  EXPECT_DOUBLE_EQ(CalcYield({.tries = 1900, .gains = 99}, 0.01), 0.05);
 }
 
 TEST(StartYield, GrowsWithGainsAndFallsWithTries) {
   for (const int tries : {1, 10, 1000}) {
-    EXPECT_LT(CalcYield({tries, 0}), CalcYield({tries, 1}));
-    EXPECT_LT(CalcYield({tries + 1, 1}), CalcYield({tries, 1}));
+    EXPECT_LT(CalcYield({tries, 0}, 0.01), CalcYield({tries, 1}, 0.01));
+    EXPECT_LT(CalcYield({tries + 1, 1}, 0.01), CalcYield({tries, 1}, 0.01));
   }
 }
 
@@ -23,7 +23,7 @@ std::vector<int> CountDraws(const std::vector<double>& yields) {
   Random random(1);
   std::vector<int> counts(yields.size() + 1);
   for (int i = 0; i < 10'000; ++i) {
-    ++counts[DrawByYield(yields, random).value_or(yields.size())];
+    ++counts[DrawByYield(yields, 0.005, random).value_or(yields.size())];
   }
   return counts;
 }
@@ -38,7 +38,7 @@ TEST(StartYield, DrawsInProportionToTheYields) {
 
 TEST(StartYield, DrawsElsewhereWhereNothingComesOfAny) {
   EXPECT_EQ(CountDraws({})[0], 10'000);
-  const double barren = CalcYield({.tries = 14'000, .gains = 0});
+  const double barren = CalcYield({.tries = 14'000, .gains = 0}, 0.01);
   EXPECT_GT(CountDraws({barren, barren})[2], 9'500);
 }
 
