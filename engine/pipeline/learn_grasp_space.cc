@@ -61,17 +61,15 @@ Result<GraspSpace> LearnInArena(const LearnRequest& request,
   result.configurations_tried = found.configurations_tried;
   result.coverage = found.coverage;
   result.configuration_space_seconds = learning.count();
-  for (Grasp& grasp : result.grasps) {
-    grasp.quality.hybrid = CalcHybrid(hand, grasp, part, parameters);
-    grasp.quality.volume = CalcWrenchVolume(
-        CalcContactWrenches(grasp.contacts, part.mass(), parameters.contact));
-  }
   const PartSurfaces parts(request.whole_E);
   result.clearances.resize(result.grasps.size());
   ParallelFor(static_cast<int>(result.grasps.size()), [&](int i) {
     const auto g = static_cast<size_t>(i);
-    result.clearances[g] =
-        parts.CalcClearances(hand, result.grasps[g].configuration);
+    Grasp& grasp = result.grasps[g];
+    grasp.quality.hybrid = CalcHybrid(hand, grasp, part, parameters);
+    grasp.quality.volume = CalcWrenchVolume(
+        CalcContactWrenches(grasp.contacts, part.mass(), parameters.contact));
+    result.clearances[g] = parts.CalcClearances(hand, grasp.configuration);
   });
   context.ReportProgress("done", 1.0);
   return result;
