@@ -140,9 +140,11 @@ class SpeedBench {
     StageOrder stages;
     stages.category = order_.category;
     stages.meshes = meshes_;
-    stages.sources = order_.quick ? 2 : 40;
-    stages.grasps = order_.quick ? 10 : 300;
-    stages.search_seconds = order_.quick ? 1 : 5;
+    if (order_.quick) {
+      stages.sources = 2;
+      stages.grasps = 10;
+      stages.search_seconds = 1;
+    }
     stages.seed = order_.seed;
     stages.stopwatch = stopwatch();
     SubContext part(context_, "stages", 0.4, 0.6);
